@@ -1,0 +1,1 @@
+#include "levelray/io/mesh_reader.hpp"

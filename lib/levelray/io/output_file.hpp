@@ -1,0 +1,23 @@
+// Outputs that are whole or absent: written beside the target under a temporary name, synced, renamed.
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace levelray {
+
+// Calls write(temporary_path), which must create that file and close it; then syncs it, renames it to `path`
+// and syncs the folder. When anything fails, or write throws, the temporary file is removed and an older
+// `path` is left as it was. Throws Error(cannot_write) naming `path` and the system's reason; what write
+// throws passes through.
+void write_file_atomically(const std::string& path,
+                           const std::function<void(const std::string& temporary_path)>& write);
+
+// Throws Error(cannot_write) when a file could not be created beside `path`: asked before long work.
+void check_writable(const std::string& path);
+
+// Removes the temporary files of running writes; async-signal-safe, for handlers of signals that end the
+// program at once.
+void remove_temporary_files() noexcept;
+
+} // namespace levelray

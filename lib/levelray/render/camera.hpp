@@ -1,0 +1,43 @@
+// A pinhole camera. Pixel (0,0) is the top left one; rays pass through pixel centres.
+#pragma once
+
+#include "levelray/core/ray.hpp"
+
+namespace levelray {
+
+struct CameraSettings {
+  Vec3d eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0}; // world units
+  double fov_degrees = 45;                          // vertical
+  int width = 512, height = 512;                    // pixels
+};
+
+class Camera {
+ public:
+  // Throws Error(usage) when eye and target coincide, up is parallel to the view, or fov or size are out of
+  // range.
+  explicit Camera(const CameraSettings& settings);
+
+  // The ray through image position (x,y) in pixels, pixel (0,0) spanning [0,1)^2 from the top left: a centre
+  // is (i+0.5, j+0.5). Unit direction, so t is a length in world units.
+  WorldRay ray(double x, double y) const;
+
+  const CameraSettings& settings() const { return settings_; }
+  Vec3d right() const { return right_; }
+  Vec3d up() const { return up_; }
+  Vec3d forward() const { return forward_; } // unit, along the view axis
+
+  // The matrices of the OpenEXR convention (StandardAttributes): row vectors; camera space left-handed, x
+  // right, y up, z along the view; NDC from (0,0) top left to (1,1) bottom right of the image.
+  Matrix44d world_to_camera() const;
+  Matrix44d world_to_ndc() const;
+
+ private:
+  CameraSettings settings_;
+  Vec3d right_, up_, forward_;
+  double half_height_; // tan(fov/2)
+};
+
+// A camera that sees all of `bounds`, from the front, slightly right and above.
+CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees = 45);
+
+} // namespace levelray

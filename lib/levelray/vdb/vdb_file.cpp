@@ -1,0 +1,1 @@
+#include "levelray/vdb/vdb_file.hpp"

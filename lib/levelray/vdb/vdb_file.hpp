@@ -1,0 +1,48 @@
+// OpenVDB files in and out. OpenVDB's headers stay inside this folder.
+#pragma once
+
+#include "levelray/grid/block_grid.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace levelray {
+
+struct VdbWriteOptions {
+  bool half = false; // store 16-bit floats
+  std::string creator = "levelray";
+};
+
+// Writes `grid` as an OpenVDB level set to `path` itself (use write_file_atomically around it). The bytes
+// follow from the grid alone. Throws Error(cannot_write); Error(limit) for voxel sizes that OpenVDB cannot
+// represent.
+void write_vdb(const std::string& path, const BlockGrid& grid, const VdbWriteOptions& options = {});
+
+struct VdbReadOptions {
+  std::string grid; // name, "name[i]" for the i-th of that name, or "[i]" for the i-th grid; empty: the only
+                    // level set
+  bool trust_input = false;                          // read in this process instead of a limited child
+  std::uint64_t max_memory = std::uint64_t{8} << 30; // bytes, for the child and for the grid
+  double timeout_seconds = 60;
+};
+
+// One line about each grid of a file.
+struct VdbGridInfo {
+  std::string name, type, grid_class, note; // note: why it cannot be traced, empty when it can
+  std::uint64_t active_samples = 0;
+  double voxel_size = 0;
+};
+
+struct VdbFile {
+  BlockGrid grid;
+  std::vector<VdbGridInfo> grids; // of the whole file
+  std::vector<std::string> warnings;
+};
+
+// Reads a level set: float, double or half, uniform scale. Throws Error(bad_input) with the reason and the
+// candidates, Error(limit) over memory or time.
+VdbFile read_vdb(const std::string& path, const VdbReadOptions& options = {});
+std::vector<VdbGridInfo> list_vdb(const std::string& path, const VdbReadOptions& options = {});
+
+} // namespace levelray
