@@ -1,0 +1,9 @@
+# The packages that the libraries are made of. The build includes this file, and so does the installed
+# levelrayConfig.cmake, because whoever links static libraries links what they stand on as well.
+
+set(levelray_packages Imath TBB fmt hwy OpenMesh)
+set(levelray_io_packages OpenEXR PNG nlohmann_json)
+set(levelray_vdb_packages OpenVDB)
+
+# OpenVDB brings a find module instead of a configuration file.
+list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)
