@@ -7,8 +7,8 @@ namespace levelray {
 
 struct CameraSettings {
   Vec3d eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0}; // world units
-  double fov_degrees = 45;                          // vertical
-  int width = 512, height = 512;                    // pixels
+  double fov_degrees = 45;                          // vertical, in (0,180)
+  int width = 512, height = 512;                    // pixels, 1 .. 65536 each
 };
 
 class Camera {
@@ -27,17 +27,22 @@ class Camera {
   Vec3d forward() const { return forward_; } // unit, along the view axis
 
   // The matrices of the OpenEXR convention (StandardAttributes): row vectors; camera space left-handed, x
-  // right, y up, z along the view; NDC from (0,0) top left to (1,1) bottom right of the image.
+  // right, y up, z along the view; NDC from (0,0) top left to (1,1) bottom right of the image, after division
+  // by w.
   Matrix44d world_to_camera() const;
   Matrix44d world_to_ndc() const;
 
  private:
   CameraSettings settings_;
-  Vec3d right_, up_, forward_;
-  double half_height_; // tan(fov/2)
+  Vec3d right_, up_, forward_; // orthonormal; left-handed in this order, as seen through the lens
+  double half_height_;         // tan(fov/2): half the image's height at unit distance
 };
 
-// A camera that sees all of `bounds`, from the front, slightly right and above.
-CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees = 45);
+// A camera that sees all of `bounds`, as large as fits with a margin of 5% on each side, from the front,
+// slightly right and above. `up` points up in the picture; the front is +z when y is up and -y when z is up
+// (the conventions of modelling programs). Bounds of no extent are seen from a distance of 1. Throws
+// Error(usage) for an `up` without direction.
+CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees = 45,
+                              const Vec3d& up = Vec3d(0, 1, 0));
 
 } // namespace levelray

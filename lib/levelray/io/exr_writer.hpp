@@ -1,0 +1,22 @@
+// OpenEXR files of rendered images.
+#pragma once
+
+#include "levelray/render/camera.hpp"
+#include "levelray/render/image.hpp"
+
+#include <string>
+
+namespace levelray {
+
+struct ExrOptions {
+  const Camera* camera = nullptr; // when given: worldToCamera, worldToNDC and the screen window
+  std::string software;           // e.g. "levelray 1.2.3"; empty: no such attribute
+  std::string comments;           // e.g. what the channels mean; empty: none
+};
+
+// The bytes of a scan-line OpenEXR file with ZIP compression: channels R, G, B, A as half (values beyond its
+// range become the largest finite half), all others as float. The same image and options give the same bytes;
+// nothing tells the time or the machine. Throws Error(failed) for images that OpenEXR refuses.
+std::string encode_exr(const Image& image, const ExrOptions& options);
+
+} // namespace levelray

@@ -1,0 +1,204 @@
+#include "levelray/render/render_image.hpp"
+
+#include "levelray/core/error.hpp"
+#include "levelray/core/parallel.hpp"
+#include "levelray/render/visibility.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+namespace levelray {
+
+namespace {
+
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Samples along a pixel's side; Error(usage) when `samples` is no square.
+int samples_per_side(int samples) {
+  const int side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(samples))));
+  if (samples < 1 || samples > 1024 || side * side != samples)
+    throw Error(ErrorKind::usage, "--samples must be a square number: 1, 4, 9, 16, 25, ... 1024");
+  return side;
+}
+
+void check(const RenderOptions& options) {
+  samples_per_side(options.samples);
+  if (options.repeat < 1) throw Error(ErrorKind::usage, "--repeat must be at least 1");
+  for (const std::string& aov : options.aovs) {
+    bool known = false;
+    for (const std::string& name : aov_names()) known = known || name == aov;
+    if (!known)
+      throw Error(ErrorKind::usage, "unknown AOV \"" + aov + "\"; choose from Z, t, P, N, steps, tests");
+  }
+  for (const DirectionalLight& light : options.lights)
+    if (!(std::abs(light.to_light.length() - 1) < 1e-9) || !(light.intensity >= 0))
+      throw Error(ErrorKind::usage, "a light needs a unit direction and an intensity >= 0");
+}
+
+// Everything that shading a tile needs, and the sums it leaves.
+struct Shading {
+  const LevelSet& level_set;
+  const RenderOptions& options;
+  const std::vector<DirectionalLight>& lights;
+  Material surface, ground_material;
+  const Ground* ground;
+  std::atomic<std::uint64_t> shadow_rays{0}, hits{0};
+};
+
+// Adds the tile's colours to `rgba` (four channels of the image), weighted.
+void shade_tile(Shading& shading, const Tile& tile, const Vec3d& eye, const GBuffer& gbuffer, float weight,
+                float* const rgba[4]) {
+  std::uint64_t shadow_rays = 0, hits = 0;
+  for (int y = tile.y_begin; y < tile.y_end; ++y)
+    for (int x = tile.x_begin; x < tile.x_end; ++x) {
+      const std::size_t i = gbuffer.index(x, y);
+      if (gbuffer.status[i] == PixelStatus::miss) continue;
+      const bool on_ground = gbuffer.status[i] == PixelStatus::ground;
+      hits += on_ground ? 0 : 1;
+      const Material& material = on_ground ? shading.ground_material : shading.surface;
+      const double coverage = on_ground ? shading.ground->coverage(gbuffer.point[i]) : 1;
+      const Vec3d normal(gbuffer.normal[i]), to_eye = (eye - gbuffer.point[i]).normalized();
+      Vec3d radiance = material.albedo * ambient_intensity;
+      for (const DirectionalLight& light : shading.lights) {
+        const Vec3d lit = shade_light(material, normal, light.to_light, to_eye) * light.intensity;
+        if (!(lit.x > 0 || lit.y > 0 || lit.z > 0)) continue;
+        if (shading.options.shadows) {
+          // From the ray's last point that is proven to be outside: no offset, hence no acne and no leak.
+          WorldRay ray;
+          ray.origin = gbuffer.outside[i];
+          ray.direction = light.to_light;
+          ++shadow_rays;
+          if (any_hit(shading.level_set, ray, shading.options.intersector)) continue;
+        }
+        radiance += lit;
+      }
+      for (int c = 0; c < 3; ++c) rgba[c][i] += static_cast<float>(radiance[c] * coverage) * weight;
+      rgba[3][i] += static_cast<float>(coverage) * weight;
+    }
+  shading.shadow_rays += shadow_rays;
+  shading.hits += hits;
+}
+
+// Copies the values of an AOV out of the G-buffer.
+void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& camera, Image& image) {
+  const auto fill = [&](const std::string& channel, float miss, auto&& value) {
+    std::vector<float>& values = image.add(channel);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = gbuffer.status[i] == PixelStatus::miss ? miss : static_cast<float>(value(i));
+  };
+  const Vec3d eye = camera.settings().eye;
+  if (name == "Z")
+    fill("Z", miss_depth, [&](std::size_t i) { return (gbuffer.point[i] - eye).dot(camera.forward()); });
+  if (name == "t") fill("t", miss_depth, [&](std::size_t i) { return gbuffer.t[i]; });
+  for (int c = 0; c < 3; ++c) {
+    const std::string suffix = std::string(".") + "XYZ"[c];
+    if (name == "P") fill("P" + suffix, 0, [&](std::size_t i) { return gbuffer.point[i][c]; });
+    if (name == "N") fill("N" + suffix, 0, [&](std::size_t i) { return gbuffer.normal[i][c]; });
+  }
+  // Counters are of the ray, whether it hit or not.
+  const auto count = [&](auto member) {
+    std::vector<float>& values = image.add(name);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(gbuffer.counts[i].*member);
+  };
+  if (name == "steps") count(&RayCounts::steps);
+  if (name == "tests") count(&RayCounts::tests);
+}
+
+} // namespace
+
+const std::vector<std::string>& aov_names() {
+  static const std::vector<std::string> names{"Z", "t", "P", "N", "steps", "tests"};
+  return names;
+}
+
+std::uint64_t render_bytes(const RenderOptions& options) {
+  std::uint64_t channels = 4;
+  for (const std::string& aov : options.aovs) channels += aov == "P" || aov == "N" ? 3 : 1;
+  const std::uint64_t pixels = static_cast<std::uint64_t>(options.camera.width) * options.camera.height;
+  // The image is held once more, in half or 8 bits with its compressed form, while it is encoded.
+  return pixels * (GBuffer::bytes_per_pixel + channels * 2 * sizeof(float));
+}
+
+RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) {
+  check(options);
+  const Camera camera(options.camera);
+  const int width = options.camera.width, height = options.camera.height;
+  const int side = samples_per_side(options.samples);
+  const bool centre_is_a_sample = side % 2 == 1;
+  const bool needs_centre_pass = !centre_is_a_sample && !options.aovs.empty();
+  const std::vector<DirectionalLight> lights =
+      options.lights.empty() ? three_point_lights(camera) : options.lights;
+  std::optional<Ground> ground;
+  if (options.ground) ground = ground_below(surface_extent(grid, options.camera.up), options.camera.up);
+
+  RenderedImage result;
+  RenderStats& stats = result.stats;
+  GBuffer gbuffer;
+  gbuffer.resize(width, height);
+  const std::uint64_t pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+  stats.primary_rays = pixels * static_cast<std::uint64_t>(options.samples + (needs_centre_pass ? 1 : 0));
+
+  std::atomic<std::uint64_t> done_pixels{0};
+  const double all_pixels =
+      static_cast<double>(pixels) * options.repeat * (2 * options.samples + needs_centre_pass);
+  const auto advance = [&](const Tile& tile) {
+    const auto n = static_cast<std::uint64_t>((tile.x_end - tile.x_begin) * (tile.y_end - tile.y_begin));
+    const std::uint64_t done = done_pixels += n;
+    if (options.progress) options.progress(static_cast<double>(done) / all_pixels);
+  };
+
+  for (int repetition = 0; repetition < options.repeat; ++repetition) {
+    result.image = Image{width, height, {}};
+    for (const char* name : {"R", "G", "B", "A"}) result.image.add(name);
+    float* rgba[4];
+    for (int c = 0; c < 4; ++c) rgba[c] = result.image.channels[static_cast<std::size_t>(c)].values.data();
+
+    auto start = std::chrono::steady_clock::now();
+    const LevelSet level_set(grid);
+    stats.prepare_ms.push_back(milliseconds_since(start));
+
+    const Visibility scene{level_set,           camera,          ground ? &*ground : nullptr,
+                           options.intersector, options.normals, is_inside(grid, options.camera.eye)};
+    Material ground_material;
+    ground_material.albedo = Vec3d(0.55);
+    Shading shading{level_set,       options,     lights, shading_material(options.shading),
+                    ground_material, scene.ground};
+    double trace_ms = 0, shade_ms = 0;
+    const auto trace = [&](double x, double y) {
+      start = std::chrono::steady_clock::now();
+      for_each_tile(width, height, [&](const Tile& tile) {
+        trace_tile(scene, tile, x, y, gbuffer);
+        advance(tile);
+      });
+      trace_ms += milliseconds_since(start);
+    };
+
+    for (int sample = 0; sample < options.samples; ++sample) {
+      trace((sample % side + 0.5) / side, (sample / side + 0.5) / side);
+      start = std::chrono::steady_clock::now();
+      for_each_tile(width, height, [&](const Tile& tile) {
+        shade_tile(shading, tile, options.camera.eye, gbuffer, 1.0f / static_cast<float>(options.samples),
+                   rgba);
+        advance(tile);
+      });
+      shade_ms += milliseconds_since(start);
+      if (centre_is_a_sample && sample == options.samples / 2) // row and column side/2: the offset (0.5, 0.5)
+        for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, result.image);
+    }
+    if (needs_centre_pass) {
+      trace(0.5, 0.5);
+      for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, result.image);
+    }
+    stats.trace_ms.push_back(trace_ms);
+    stats.shade_ms.push_back(shade_ms);
+    stats.shadow_rays = shading.shadow_rays;
+    stats.hits = shading.hits;
+  }
+  return result;
+}
+
+} // namespace levelray
