@@ -26,8 +26,7 @@ function(levelray_pkg_config name description requires libs)
 endfunction()
 levelray_pkg_config(levelray "${PROJECT_DESCRIPTION}" "Imath tbb fmt libhwy openmesh" "-llevelray")
 levelray_pkg_config(levelray_io "Files and pictures for levelray" "levelray OpenEXR libpng" "-llevelray_io")
-levelray_pkg_config(levelray_vdb "OpenVDB files for levelray" "levelray"
-                    "-llevelray_vdb -lopenvdb -lboost_iostreams -lz -lblosc")
+levelray_pkg_config(levelray_vdb "OpenVDB files for levelray" "levelray" "-llevelray_vdb -lopenvdb")
 
 if(TARGET levelray_program)
   install(TARGETS levelray_program DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -14,3 +14,17 @@ run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer ${WORK_DIR})
 run(${WORK_DIR}/build/consumer_of_the_numerics)
 run(${WORK_DIR}/prefix/bin/levelray --version)
+
+# The same through pkg-config, where there is one.
+find_program(PKG_CONFIG pkg-config)
+if(NOT PKG_CONFIG)
+  message("skipped: the .pc files, because pkg-config is not installed")
+  return()
+endif()
+file(GLOB pc_dir ${WORK_DIR}/prefix/lib*/pkgconfig ${WORK_DIR}/prefix/lib/*/pkgconfig)
+set(ENV{PKG_CONFIG_PATH} ${pc_dir})
+execute_process(COMMAND ${PKG_CONFIG} --cflags --libs levelray_vdb levelray_io levelray
+                OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${flags} ${FLAGS}")
+run(${CXX} -std=c++20 ${SOURCE_DIR}/main.cpp -o ${WORK_DIR}/consumer_by_pkg_config ${flags})
+run(${WORK_DIR}/consumer_by_pkg_config ${WORK_DIR})

@@ -35,7 +35,7 @@ DOORS = [
 TOP_LEVEL = {"CMakeLists.txt", "CMakePresets.json", "README.md", "lib", "apps", "tests", "data", "scripts"}
 FIXED_NAMES = {"CMakeLists.txt", "CMakePresets.json", "README.md"}
 MAX_LINES = 400
-CODE = (".hpp", ".cpp")
+CODE = (".hpp", ".cpp", ".inl")
 BINARY = (".png", ".exr", ".vdb", ".ply", ".stl")
 
 # Spelled in pieces, so that this file passes its own rules.
