@@ -21,7 +21,7 @@ struct GBuffer {
   uninitialized_vector<Vec3d> point;   // world units: the ray's point at t
   uninitialized_vector<Vec3d> outside; // world units: the ray's last point proven to lie before the surface,
                                        // where secondary rays start
-  uninitialized_vector<Vec3f> normal; // unit, outward (towards the positive side); never NaN
+  uninitialized_vector<Vec3f> normal;  // unit, outward (towards the positive side); never NaN
   uninitialized_vector<RayCounts> counts;
 
   // Bytes that a pixel takes.
