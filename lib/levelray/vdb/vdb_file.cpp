@@ -1,1 +1,0 @@
-#include "levelray/vdb/vdb_file.hpp"
