@@ -1,0 +1,29 @@
+// Triangles over the same three vertices: which to drop, thinking of the oriented boundary of the mesh as a
+// chain.
+#pragma once
+
+#include "levelray/mesh/edge_table.hpp"
+
+namespace levelray {
+
+struct Duplicates {
+  std::uint64_t same = 0;             // triangles with an earlier one of the same vertices and orientation
+  std::uint64_t opposite = 0;         // vertex triples that have triangles of both orientations
+  std::vector<std::uint32_t> dropped; // ascending
+  std::uint64_t dropped_same = 0;
+  std::uint64_t dropped_opposite = 0;
+};
+
+// A repeated triangle is dropped, unless the mesh is closed because of it. That is decided for each cluster
+// of repeated triangles that share edges, by its edges that triangles outside the cluster meet too:
+// repetitions stay when the oriented chain has no boundary there with them and one without them, or when
+// dropping would leave more edges with an odd number of triangles (two tetrahedra on a doubled face;
+// whichever way it is oriented).
+//
+// Opposite pairs stay: they cancel in the winding number. Only in a shell (connected over edges) of which at
+// least 90 % are in pairs, which encloses nothing that way, all but the first of each triple are dropped,
+// when `single_double_sided`.
+Duplicates find_duplicates(const std::vector<Triangle>& triangles, const EdgeTable& edges,
+                           bool single_double_sided);
+
+} // namespace levelray
