@@ -1,0 +1,48 @@
+// 64-bit masks of the 4x4x4 children of a node or a block, as a ray sees them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace levelray {
+
+// The mask with the axes of `octant` mirrored: child (x,y,z) moves to (3-x,y,z) and so on.
+inline std::uint64_t mirror_mask(std::uint64_t mask, int octant) {
+  if (octant & 1) {
+    mask = (mask & 0x5555555555555555ull) << 1 | (mask >> 1 & 0x5555555555555555ull);
+    mask = (mask & 0x3333333333333333ull) << 2 | (mask >> 2 & 0x3333333333333333ull);
+  }
+  if (octant & 2) {
+    mask = (mask & 0x0F0F0F0F0F0F0F0Full) << 4 | (mask >> 4 & 0x0F0F0F0F0F0F0F0Full);
+    mask = (mask & 0x00FF00FF00FF00FFull) << 8 | (mask >> 8 & 0x00FF00FF00FF00FFull);
+  }
+  if (octant & 4) {
+    mask = (mask & 0x0000FFFF0000FFFFull) << 16 | (mask >> 16 & 0x0000FFFF0000FFFFull);
+    mask = mask << 32 | mask >> 32;
+  }
+  return mask;
+}
+
+// The bits set in `mask`; kept free of library calls, which a build for any x86-64 would make.
+inline std::uint64_t count_bits(std::uint64_t mask) {
+  mask -= mask >> 1 & 0x5555555555555555ull;
+  mask = (mask & 0x3333333333333333ull) + (mask >> 2 & 0x3333333333333333ull);
+  mask = (mask + (mask >> 4)) & 0x0F0F0F0F0F0F0F0Full;
+  return mask * 0x0101010101010101ull >> 56;
+}
+
+// Children whose coordinate along an axis lies in low..high, by [axis][low][high].
+inline constexpr auto layer_masks = [] {
+  std::array<std::array<std::array<std::uint64_t, 4>, 4>, 3> masks{};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int low = 0; low < 4; ++low)
+      for (int high = low; high < 4; ++high)
+        for (int bit = 0; bit < 64; ++bit) {
+          const int digit = bit >> 2 * axis & 3;
+          if (digit >= low && digit <= high) masks[axis][low][high] |= std::uint64_t{1} << bit;
+        }
+  return masks;
+}();
+
+} // namespace levelray

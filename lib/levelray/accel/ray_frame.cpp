@@ -1,0 +1,79 @@
+#include "levelray/accel/ray_frame.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace levelray {
+
+namespace {
+
+// 2^-exponent(x) for finite x > 0, exact; multiplying x by it gives [1,2), except where the result would not be
+// a normal number.
+double reciprocal_power(double x) {
+  const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52); // sign bit is clear
+  if (exponent != 0 && exponent < 2046)
+    return std::bit_cast<double>(static_cast<std::uint64_t>(2046 - exponent) << 52);
+  return std::ldexp(1.0, std::clamp(-std::ilogb(x), -1022, 1023));
+}
+
+} // namespace
+
+std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransform& transform,
+                                  const WorldRay& ray) {
+  if (surface.empty() || !(ray.t_min <= ray.t_max)) return std::nullopt;
+  const double per_voxel = 1 / transform.voxel_size;
+
+  // Scale the direction, so that neither tiny nor huge ones over- or underflow below.
+  const double scaled[3] = {ray.direction.x * per_voxel, ray.direction.y * per_voxel, ray.direction.z * per_voxel};
+  const double largest = std::max({std::fabs(scaled[0]), std::fabs(scaled[1]), std::fabs(scaled[2])});
+  if (!(largest > 0 && largest <= std::numeric_limits<double>::max())) return std::nullopt;
+  const double scale = reciprocal_power(largest);
+
+  // Mirror, clip to the slabs.
+  RayFrame frame;
+  frame.octant = 0;
+  frame.t_per_s = scale;
+  double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
+  int enter_axis = 0;
+  double high[3];
+  for (int a = 0; a < 3; ++a) {
+    const double o = (ray.origin[a] - transform.origin[a]) * per_voxel, d = scaled[a] * scale;
+    const double box_low = surface.node_min()[a] * double{node_dim};
+    high[a] = surface.node_dims()[a] * double{node_dim};
+    const bool mirror = std::signbit(d);
+    frame.octant |= int{mirror} << a;
+    frame.origin[a] = mirror ? (box_low + high[a]) - o : o - box_low;
+    frame.direction[a] = mirror ? -d : d;
+    frame.inverse[a] = 1 / std::max(frame.direction[a], 0x1p-100);
+    const double slab_in = (0 - frame.origin[a]) * frame.inverse[a];
+    const double slab_out = (high[a] - frame.origin[a]) * frame.inverse[a];
+    if (!(slab_in <= slab_out)) return std::nullopt; // NaN or infinite origin, or NaN direction
+    if (slab_in > enter) {
+      enter = slab_in;
+      enter_axis = a;
+    }
+    leave = std::min(leave, slab_out);
+  }
+
+  // The interval in the scaled parameter, whose unit is t_per_s of the ray's own.
+  const double first = ray.t_min / scale, last = ray.t_max / scale;
+  frame.from_outside = enter > first;
+  const double start = frame.from_outside ? enter : first;
+  const double stop = std::min(leave, last);
+  if (!(start <= stop)) return std::nullopt;
+  frame.end = stop - start;
+  frame.t_at_start = frame.from_outside ? start * scale : ray.t_min;
+
+  // Begin there.
+  for (int a = 0; a < 3; ++a) {
+    frame.origin[a] += start * frame.direction[a];
+    if (frame.from_outside && a == enter_axis) frame.origin[a] = 0;
+    frame.start_node[a] =
+        static_cast<int>(std::clamp(std::floor(frame.origin[a] / node_dim), 0.0, high[a] / node_dim - 1));
+  }
+  return frame;
+}
+
+} // namespace levelray

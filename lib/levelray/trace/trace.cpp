@@ -1,0 +1,137 @@
+#include "levelray/trace/trace.hpp"
+
+#include "levelray/accel/cell_walk.hpp"
+#include "levelray/core/error.hpp"
+#include "levelray/intersect/intersectors.hpp"
+#include "levelray/trace/level_set.hpp"
+
+#include <cassert>
+
+namespace levelray {
+
+namespace {
+
+// On which side a ray begins: known where it comes in through the hull of the box, else decided by the first
+// surface cell on its way, at whose beginning the value still has the sign of the ray's beginning (cells
+// without the bit do not change it). On the surface itself either will do: it is hit there.
+class StartingSide {
+ public:
+  explicit StartingSide(const RayFrame& ray) : side_(ray.from_outside ? 1 : 0) {}
+
+  double at_first(const CellSegment& segment) {
+    if (side_ == 0) side_ = interpolate(segment.corner, segment.in) < 0 ? -1 : 1;
+    return side_;
+  }
+  bool inside() const { return side_ < 0; }
+
+ private:
+  double side_;
+};
+
+Vec3i grid_cell(const SurfaceBlocks& surface, const RayFrame& ray, const int (&position)[3]) {
+  Vec3i cell;
+  for (int a = 0; a < 3; ++a) {
+    const int low = surface.node_min()[a] * node_dim, size = surface.node_dims()[a] * node_dim;
+    cell[a] = low + (ray.octant >> a & 1 ? size - 1 - position[a] : position[a]);
+  }
+  return cell;
+}
+
+void add_counts(RayCounts& counts, const WalkCounts& walked) {
+  counts.steps += walked.nodes + walked.blocks + walked.cells;
+  counts.tests += walked.cells;
+}
+
+template <class Work>
+void for_intersector(std::string_view name, Work&& work) {
+  if (visit_method<Intersectors>(canonical_intersector(name), work)) return;
+  std::string names;
+  for (const std::string& known : method_names<Intersectors>()) names += (names.empty() ? "" : ", ") + known;
+  throw Error(ErrorKind::usage,
+              "unknown intersector '" + std::string(name) + "'; legal are " + names + " and false-position");
+}
+
+} // namespace
+
+template <class Intersector>
+Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
+  Hit hit;
+  const std::optional<RayFrame> frame = enter_box(level_set.surface(), level_set.grid().transform, ray);
+  if (!frame) return hit;
+
+  StartingSide side(*frame);
+  WalkCounts walked;
+  double proven = 0; // s of the last point known to lie on the starting side
+  walk_cells(level_set.surface(), *frame, walked, [&](const VisitedCell& cell) {
+    CellRoot root;
+    if (!Intersector::find(cell.segment, side.at_first(cell.segment), root)) {
+      proven = cell.in;
+      return false;
+    }
+    hit.status = HitStatus::hit;
+    hit.t = frame->t(cell.in + root.at * (cell.out - cell.in));
+    hit.t_outside = frame->t(root.outside >= 0 ? cell.in + root.outside * (cell.out - cell.in) : proven);
+    hit.cell = grid_cell(level_set.surface(), *frame, cell.position);
+    return true;
+  });
+  hit.from_inside = hit && side.inside();
+  add_counts(hit.counts, walked);
+  return hit;
+}
+
+template <class Intersector>
+bool trace_any(const LevelSet& level_set, const WorldRay& ray, RayCounts& counts) {
+  const std::optional<RayFrame> frame = enter_box(level_set.surface(), level_set.grid().transform, ray);
+  if (!frame) return false;
+
+  StartingSide side(*frame);
+  WalkCounts walked;
+  const bool hit = walk_cells(level_set.surface(), *frame, walked, [&](const VisitedCell& cell) {
+    return Intersector::exists(cell.segment, side.at_first(cell.segment));
+  });
+  add_counts(counts, walked);
+  return hit;
+}
+
+void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
+                  std::span<Hit> hits) {
+  assert(rays.size() == hits.size());
+  for_intersector(intersector, [&]<class Intersector>(Intersector) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = trace_closest<Intersector>(level_set, rays[i]);
+  });
+}
+
+Hit closest_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector) {
+  Hit hit;
+  closest_hits(level_set, {&ray, 1}, intersector, {&hit, 1});
+  return hit;
+}
+
+void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
+              std::span<bool> hits, RayCounts* counts) {
+  assert(rays.size() == hits.size());
+  RayCounts sum;
+  for_intersector(intersector, [&]<class Intersector>(Intersector) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = trace_any<Intersector>(level_set, rays[i], sum);
+  });
+  if (counts) counts->steps += sum.steps, counts->tests += sum.tests;
+}
+
+bool any_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector, RayCounts* counts) {
+  bool hit = false;
+  any_hits(level_set, {&ray, 1}, intersector, {&hit, 1}, counts);
+  return hit;
+}
+
+namespace {
+
+// Instantiates both for every entry of the list.
+template <class... I>
+constexpr auto instantiate(std::tuple<I...>*) {
+  return std::tuple{&trace_closest<I>..., &trace_any<I>...};
+}
+[[maybe_unused]] constexpr auto instances = instantiate(static_cast<Intersectors*>(nullptr));
+
+} // namespace
+
+} // namespace levelray
