@@ -1,17 +1,17 @@
 // Visits the surface cells along a ray, front to back.
 //
-// Source: the two-level traversal with cell masks of Jamriska 2010, section 4.1, after Amanatides and Woo 1987.
-// Ours differs: three levels (nodes 16^3, blocks 4^3, cells); empty nodes are left by leaps over the largest
-// empty cube ahead; inside a node and a block there is no stepping: the children that the chord can meet are
-// cut out of the 64-bit mask, and each is tested against its slabs. In the mirrored frame coordinates only
-// grow along a ray, so a child that is met later has no smaller digit, and ascending bits are an order from
-// front to back.
+// Source: the two-level traversal with cell masks of Jamriska 2010, section 4.1, after Amanatides and Woo
+// 1987. Ours differs: three levels (nodes 16^3, blocks 4^3, cells); empty nodes are left by leaps over the
+// largest empty cube ahead; inside a node and a block there is no stepping: the children that the chord can
+// meet are cut out of the 64-bit mask, and each is tested against its slabs. In the mirrored frame
+// coordinates only grow along a ray, so a child that is met later has no smaller digit, and ascending bits
+// are an order from front to back.
 //
 // Times. s of a plane is always (plane - origin) * inverse from the integer plane, so it is monotone in the
 // plane, all levels agree on shared planes, and nothing accumulates. A child's interval [in, out] is closed:
 // the largest of three lower and the smallest of three upper planes, cut to [0, end]. Closed intervals of
-// children with shared planes cover the whole chord whatever rounding does, so a tie at an edge or corner adds
-// a visit of length zero and never loses one.
+// children with shared planes cover the whole chord whatever rounding does, so a tie at an edge or corner
+// adds a visit of length zero and never loses one.
 //
 // No leaks. Neighbours across a face, an edge or a corner share samples, so cells whose bits are clear cannot
 // be positive on one and negative on the other side of a visited cell without that cell's interpolant having
@@ -56,8 +56,8 @@ struct PlaneTimes {
 };
 
 // A superset of the children of the box at `corner` that the ray meets in [in, out]: those between the
-// children of the ends. The margin of 2^-20 children covers the rounding of the points against that of the plane
-// times, which is below 2^-28 voxel in a box of 2^22 voxels.
+// children of the ends. The margin of 2^-20 children covers the rounding of the points against that of the
+// plane times, which is below 2^-28 voxel in a box of 2^22 voxels.
 inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3], double per_child, double in,
                                 double out) {
   std::uint64_t mask = ~std::uint64_t{0};
@@ -66,7 +66,8 @@ inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3], dou
     const double last = (ray.origin[a] + out * ray.direction[a] - corner[a]) * per_child + 0x1p-20;
     const int low = static_cast<int>(std::min(std::max(first, 0.0), 3.0));
     const int high = static_cast<int>(std::min(std::max(last, 0.0), 3.0));
-    mask &= layer_masks[static_cast<std::size_t>(a)][static_cast<std::size_t>(low)][static_cast<std::size_t>(high)];
+    mask &= layer_masks[static_cast<std::size_t>(a)][static_cast<std::size_t>(low)]
+                       [static_cast<std::size_t>(high)];
   }
   return mask;
 }
@@ -111,7 +112,8 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
   VisitedCell cell;
   const auto visit_block = [&](std::size_t block, const int(&corner)[3], double in, double out) {
     ++counts.blocks;
-    std::uint64_t rest = mirror_mask(surface.cells(block), ray.octant) & walk::chord_mask(ray, corner, 1, in, out);
+    std::uint64_t rest =
+        mirror_mask(surface.cells(block), ray.octant) & walk::chord_mask(ray, corner, 1, in, out);
     if (!rest) return false;
     const walk::PlaneTimes times(ray, corner, 1);
     const float* const record = surface.record(block);
@@ -136,8 +138,7 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
   };
 
   const auto visit_node = [&](const SurfaceBlocks::Node& node, const int(&corner)[3], double in, double out) {
-    std::uint64_t rest =
-        mirror_mask(node.blocks, ray.octant) & walk::chord_mask(ray, corner, 0.25, in, out);
+    std::uint64_t rest = mirror_mask(node.blocks, ray.octant) & walk::chord_mask(ray, corner, 0.25, in, out);
     if (!rest) return false;
     const walk::PlaneTimes times(ray, corner, block_dim);
     for (; rest; rest &= rest - 1) {
@@ -165,8 +166,7 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
 
     // Find where the ray leaves the node, or the empty cube that begins with it.
     double leave[3];
-    for (int a = 0; a < 3; ++a)
-      leave[a] = ((at[a] + length) * node_dim - ray.origin[a]) * ray.inverse[a];
+    for (int a = 0; a < 3; ++a) leave[a] = ((at[a] + length) * node_dim - ray.origin[a]) * ray.inverse[a];
     const int axis = leave[0] <= leave[1] ? (leave[0] <= leave[2] ? 0 : 2) : (leave[1] <= leave[2] ? 1 : 2);
     const double next = std::max(s, leave[axis]);
 
@@ -174,8 +174,8 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
       const int corner[3] = {at[0] * node_dim, at[1] * node_dim, at[2] * node_dim};
       if (visit_node(surface.node(entry), corner, s, std::min(next, ray.end))) return true;
     }
-    // Beyond the end nothing counts; a plane crossed at the very end is no reason to go on either, because the
-    // cells before it have been visited up to it.
+    // Beyond the end nothing counts; a plane crossed at the very end is no reason to go on either, because
+    // the cells before it have been visited up to it.
     if (!(next < ray.end)) return false;
 
     // Move on: the crossed axis by integers, the others to where the ray is.

@@ -9,8 +9,8 @@ namespace levelray {
 
 namespace {
 
-// 2^-exponent(x) for finite x > 0, exact; multiplying x by it gives [1,2), except where the result would not be
-// a normal number.
+// 2^-exponent(x) for finite x > 0, exact; multiplying x by it gives [1,2), except where the result would not
+// be a normal number.
 double reciprocal_power(double x) {
   const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52); // sign bit is clear
   if (exponent != 0 && exponent < 2046)
@@ -26,7 +26,8 @@ std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransf
   const double per_voxel = 1 / transform.voxel_size;
 
   // Scale the direction, so that neither tiny nor huge ones over- or underflow below.
-  const double scaled[3] = {ray.direction.x * per_voxel, ray.direction.y * per_voxel, ray.direction.z * per_voxel};
+  const double scaled[3] = {ray.direction.x * per_voxel, ray.direction.y * per_voxel,
+                            ray.direction.z * per_voxel};
   const double largest = std::max({std::fabs(scaled[0]), std::fabs(scaled[1]), std::fabs(scaled[2])});
   if (!(largest > 0 && largest <= std::numeric_limits<double>::max())) return std::nullopt;
   const double scale = reciprocal_power(largest);

@@ -1,9 +1,9 @@
 // A world-space ray made ready for traversal.
 //
-// The frame has its origin in a corner of the box of surface nodes, unit = voxel, and axes mirrored so that no
-// component of the direction is negative: coordinates of the box run from 0 to 16 * dims, and a ray enters
-// cells by their lower faces. The ray's parameter s is 0 where tracing begins, and is scaled by a power of two
-// so that the largest component of the direction lies in [1,2).
+// The frame has its origin in a corner of the box of surface nodes, unit = voxel, and axes mirrored so that
+// no component of the direction is negative: coordinates of the box run from 0 to 16 * dims, and a ray enters
+// cells by their lower faces. The ray's parameter s is 0 where tracing begins, and is scaled by a power of
+// two so that the largest component of the direction lies in [1,2).
 #pragma once
 
 #include "levelray/accel/surface_blocks.hpp"
@@ -22,9 +22,9 @@ struct RayFrame {
   double end;          // the last s, >= 0
   double t_at_start;   // t = t_at_start + s * t_per_s
   double t_per_s;
-  int octant;          // bit a: axis a is mirrored
-  int start_node[3];   // that holds the origin, in the frame's nodes
-  bool from_outside;   // s = 0 lies on the box's hull, where every sample is positive: the ray came in there
+  int octant;        // bit a: axis a is mirrored
+  int start_node[3]; // that holds the origin, in the frame's nodes
+  bool from_outside; // s = 0 lies on the box's hull, where every sample is positive: the ray came in there
 
   double t(double s) const { return t_at_start + s * t_per_s; }
 };

@@ -110,7 +110,8 @@ void SurfaceBlocks::compute_leaps(int octant) {
     if (x < 0 || y < 0 || z < 0 || x >= dims[0] || y >= dims[1] || z >= dims[2]) return 254;
     return leaps[static_cast<std::size_t>(x) +
                  static_cast<std::size_t>(dims[0]) *
-                     (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(z))];
+                     (static_cast<std::size_t>(y) +
+                      static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(z))];
   };
   // Visit nodes from the octant's far end.
   for (int k = dims[2] - 1; k >= 0; --k)
@@ -119,10 +120,10 @@ void SurfaceBlocks::compute_leaps(int octant) {
         const int x = step[0] > 0 ? i : dims[0] - 1 - i;
         const int y = step[1] > 0 ? j : dims[1] - 1 - j;
         const int z = step[2] > 0 ? k : dims[2] - 1 - k;
-        const std::size_t at =
-            static_cast<std::size_t>(x) +
-            static_cast<std::size_t>(dims[0]) *
-                (static_cast<std::size_t>(y) + static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(z));
+        const std::size_t at = static_cast<std::size_t>(x) +
+                               static_cast<std::size_t>(dims[0]) *
+                                   (static_cast<std::size_t>(y) +
+                                    static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(z));
         if (table_[at] != no_node) continue;
         int least = 254;
         for (int c = 1; c < 8; ++c)

@@ -1,13 +1,13 @@
 // The blocks of a grid that the surface crosses, laid out for rays.
 //
-// Three levels: a dense table of nodes (16^3 cells), per node a 64-bit mask of surface blocks (4^3 cells), per
-// surface block a 64-bit mask of surface cells and the 5^3 samples that the block's cells touch, so that a
-// cell never looks beyond its block (Jamriska 2010, sections 3 and 4.1, with one more level and the apron).
+// Three levels: a dense table of nodes (16^3 cells), per node a 64-bit mask of surface blocks (4^3 cells),
+// per surface block a 64-bit mask of surface cells and the 5^3 samples that the block's cells touch, so that
+// a cell never looks beyond its block (Jamriska 2010, sections 3 and 4.1, with one more level and the apron).
 // Blocks are sorted by node, then bit: a child is its node's first block plus a population count.
 //
-// Empty nodes know, for each of the eight octants of directions, the edge (in nodes) of the largest empty cube
-// that begins with them and grows that way: a ray may leap to the far side of it. What lies beyond the table
-// counts as empty.
+// Empty nodes know, for each of the eight octants of directions, the edge (in nodes) of the largest empty
+// cube that begins with them and grows that way: a ray may leap to the far side of it. What lies beyond the
+// table counts as empty.
 #pragma once
 
 #include "levelray/grid/block_grid.hpp"
@@ -24,8 +24,8 @@ class SurfaceBlocks {
     std::uint64_t blocks = 0; // mask of surface blocks
     std::uint64_t first = 0;  // index of the lowest of them
   };
-  // 125 samples, x fastest; then the bound CellSegment::error for the block's cells; two floats of padding: 512
-  // bytes that begin at a cache line.
+  // 125 samples, x fastest; then the bound CellSegment::error for the block's cells; two floats of padding:
+  // 512 bytes that begin at a cache line.
   static constexpr int record_floats = 128;
   static constexpr int record_error = 125;
   static constexpr int record_stride_y = 5, record_stride_z = 25;

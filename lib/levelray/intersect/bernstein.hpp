@@ -1,7 +1,7 @@
 // The trilinear interpolant along a segment of a ray: a cubic in Bernstein form.
 //
-// f is affine in each coordinate, so with F(a,b,c) = f(x_a, y_b, z_c), where each digit takes the coordinate of
-// the segment's start (0) or end (1), the blossom of the cubic gives
+// f is affine in each coordinate, so with F(a,b,c) = f(x_a, y_b, z_c), where each digit takes the coordinate
+// of the segment's start (0) or end (1), the blossom of the cubic gives
 //   b0 = F000, b1 = (F100 + F010 + F001)/3, b2 = (F110 + F101 + F011)/3, b3 = F111
 // (the cubic itself: Parker et al. 1998; its power basis loses six times as many digits). b0 and b3 are the
 // interpolant at the ends, computed just as `interpolate` does, so that neighbours agree on shared faces. The
@@ -35,8 +35,8 @@ inline Bernstein<T> bernstein_along(const CellSegment& segment) {
   for (int a = 0; a < 2; ++a) {
     T along_x[4];
     for (int i = 0; i < 4; ++i)
-      along_x[i] =
-          lerp_exact_ends(static_cast<T>(segment.corner[2 * i]), static_cast<T>(segment.corner[2 * i + 1]), x_rest[a], x[a]);
+      along_x[i] = lerp_exact_ends(static_cast<T>(segment.corner[2 * i]),
+                                   static_cast<T>(segment.corner[2 * i + 1]), x_rest[a], x[a]);
     for (int b = 0; b < 2; ++b) {
       const T low = lerp_exact_ends(along_x[0], along_x[1], y_rest[b], y[b]);
       const T high = lerp_exact_ends(along_x[2], along_x[3], y_rest[b], y[b]);

@@ -5,8 +5,8 @@
 //   static bool exists(const CellSegment&, double side);
 //   static bool find(const CellSegment&, double side, CellRoot&);
 // `side` is +1 where the ray began outside (positive values), -1 where it began inside. `find` looks for the
-// first point of the segment, ends included, where side * f <= 0, and returns false where it sees none; `exists`
-// answers the same without the place. Neither ever fails in another way.
+// first point of the segment, ends included, where side * f <= 0, and returns false where it sees none;
+// `exists` answers the same without the place. Neither ever fails in another way.
 #pragma once
 
 #include "levelray/grid/cell_segment.hpp"
@@ -16,8 +16,9 @@ namespace levelray {
 struct CellRoot {
   static constexpr double nowhere = -1;
 
-  double at = 0;            // fraction of the segment, [0,1]
-  double outside = nowhere; // a fraction <= at where side * f is safely positive, or `nowhere` in this segment
+  double at = 0; // fraction of the segment, [0,1]
+  double outside =
+      nowhere; // a fraction <= at where side * f is safely positive, or `nowhere` in this segment
 };
 
 } // namespace levelray

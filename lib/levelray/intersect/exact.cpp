@@ -77,9 +77,10 @@ void Exact::polish(const Bernstein<double>& f, double last, CellRoot& root) {
   root.at = s;
 
   // A start for secondary rays. They compute their point anew, from world coordinates, with an error of some
-  // 2^-53 of the grid's size in voxels, so f must exceed that: 2^-36 of the largest coefficient serves grids of
-  // 2^14 voxels and more.
-  const double margin = 0x1p-36 * std::max({std::fabs(f.b[0]), std::fabs(f.b[1]), std::fabs(f.b[2]), std::fabs(f.b[3])});
+  // 2^-53 of the grid's size in voxels, so f must exceed that: 2^-36 of the largest coefficient serves grids
+  // of 2^14 voxels and more.
+  const double margin =
+      0x1p-36 * std::max({std::fabs(f.b[0]), std::fabs(f.b[1]), std::fabs(f.b[2]), std::fabs(f.b[3])});
   for (const double back : {0x1p-20, 0x1p-10, 1.0}) {
     const double before = std::max(0.0, s - back);
     if (cubic(before) > margin) {

@@ -23,7 +23,8 @@ namespace levelray {
 
 struct Exact {
   static constexpr std::string_view name = "exact";
-  static constexpr std::string_view source = "first root of the trilinear cubic; Parker et al. 1998, Marmitt et al. 2004";
+  static constexpr std::string_view source =
+      "first root of the trilinear cubic; Parker et al. 1998, Marmitt et al. 2004";
 
   static bool exists(const CellSegment& segment, double side) {
     if (surely_positive(segment, side)) return false;
@@ -48,7 +49,8 @@ struct Exact {
   static bool surely_positive(const CellSegment& segment, double side) {
     const Bernstein<float> f = bernstein_along<float>(segment);
     const float sign = static_cast<float>(side), error = segment.error;
-    return (f.b[0] * sign > error) & (f.b[1] * sign > error) & (f.b[2] * sign > error) & (f.b[3] * sign > error);
+    return (f.b[0] * sign > error) & (f.b[1] * sign > error) & (f.b[2] * sign > error) &
+           (f.b[3] * sign > error);
   }
   static Bernstein<double> oriented(const CellSegment& segment, double side) {
     Bernstein<double> f = bernstein_along<double>(segment);

@@ -1,9 +1,9 @@
 // The interpolant's signs at the two ends decide; N steps of false position find the place.
 //
 // Source: Jamriska 2010, section 4.2. Two roots in one cell have equal signs at both ends and are lost, as in
-// the paper (per million hits: 17 on a sphere of radius 20 voxels, 10,642 on a slab of 0.8 voxel). Ours differs
-// in comparing with the side on which the ray began, so that a change of sign between two cells is not lost
-// to rounding: a segment that begins on the other side is hit at its start.
+// the paper (per million hits: 17 on a sphere of radius 20 voxels, 10,642 on a slab of 0.8 voxel). Ours
+// differs in comparing with the side on which the ray began, so that a change of sign between two cells is
+// not lost to rounding: a segment that begins on the other side is hit at its start.
 #pragma once
 
 #include "levelray/intersect/cell_root.hpp"
@@ -15,7 +15,8 @@ namespace levelray {
 template <int Steps>
 struct FalsePosition {
   static_assert(Steps >= 1 && Steps <= 9);
-  static constexpr char text[] = {'f', 'a', 'l', 's', 'e', '-', 'p', 'o', 's', 'i', 't', 'i', 'o', 'n', '-', '0' + Steps};
+  static constexpr char text[] = {'f', 'a', 'l', 's', 'e', '-', 'p', 'o',
+                                  's', 'i', 't', 'i', 'o', 'n', '-', '0' + Steps};
   static constexpr std::string_view name{text, sizeof text};
   static constexpr std::string_view source = "Jamriska 2010, section 4.2";
 

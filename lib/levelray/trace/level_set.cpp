@@ -8,7 +8,8 @@ namespace {
 
 const BlockGrid& checked(const BlockGrid& grid) {
   if (grid.cells.size() != grid.block_count())
-    throw Error(ErrorKind::failed, "the grid has no cell masks; call update_cell_masks after changing samples");
+    throw Error(ErrorKind::failed,
+                "the grid has no cell masks; call update_cell_masks after changing samples");
   return grid;
 }
 

@@ -3,13 +3,15 @@
 
 #include "levelray/accel/surface_blocks.hpp"
 #include "levelray/grid/block_grid.hpp"
+#include "levelray/trace/hit_normals.hpp"
+#include "levelray/trace/trace.hpp"
 
 namespace levelray {
 
 class LevelSet {
  public:
-  // Keeps a reference: the grid must outlive the level set and stay as it is. Builds all acceleration data, in
-  // parallel, from the grid's cell masks, which must be up to date (update_cell_masks) and complete: every
+  // Keeps a reference: the grid must outlive the level set and stay as it is. Builds all acceleration data,
+  // in parallel, from the grid's cell masks, which must be up to date (update_cell_masks) and complete: every
   // cell whose corners do not all have the same strict sign has its lowest corner in a stored block.
   explicit LevelSet(const BlockGrid& grid);
 
@@ -23,5 +25,3 @@ class LevelSet {
 };
 
 } // namespace levelray
-
-#include "levelray/trace/trace.hpp"

@@ -117,7 +117,8 @@ void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::st
   if (counts) counts->steps += sum.steps, counts->tests += sum.tests;
 }
 
-bool any_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector, RayCounts* counts) {
+bool any_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector,
+             RayCounts* counts) {
   bool hit = false;
   any_hits(level_set, {&ray, 1}, intersector, {&hit, 1}, counts);
   return hit;

@@ -1,11 +1,11 @@
 // closest_hit and any_hit: the doors through which all rays go.
 //
 // The surface is the zero level of the trilinear interpolant of the grid's samples. A ray that begins outside
-// (f > 0) reports the first t in [t_min, t_max] with f <= 0, be it a crossing or a touch; one that begins inside
-// (f < 0) the first t with f >= 0; one that begins on the surface its beginning. Intervals are closed.
+// (f > 0) reports the first t in [t_min, t_max] with f <= 0, be it a crossing or a touch; one that begins
+// inside (f < 0) the first t with f >= 0; one that begins on the surface its beginning. Intervals are closed.
 //
-// Any direction but zero, of any finite length; its t is in units of that length. Infinite t_min and t_max are
-// fine, and so is an interval that begins before 0. A zero or infinite direction, t_min > t_max, or a NaN
+// Any direction but zero, of any finite length; its t is in units of that length. Infinite t_min and t_max
+// are fine, and so is an interval that begins before 0. A zero or infinite direction, t_min > t_max, or a NaN
 // anywhere is a miss. No ray makes these functions hang or throw, but for an unknown intersector.
 #pragma once
 
@@ -20,8 +20,8 @@ namespace levelray {
 class LevelSet;
 
 // By the intersector of that name (intersect/intersectors.hpp, or `false-position`, short for its first). All
-// throw Error(usage), naming the legal ones, where there is none; none looks the name up per ray but the first
-// and the last.
+// throw Error(usage), naming the legal ones, where there is none; none looks the name up per ray but the
+// first and the last.
 Hit closest_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector = "exact");
 void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
                   std::span<Hit> hits);

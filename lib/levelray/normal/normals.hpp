@@ -1,0 +1,35 @@
+// The one list of normal schemes; command line, documentation, instantiations and tests come from it.
+#pragma once
+
+#include "levelray/core/methods.hpp"
+#include "levelray/normal/analytic.hpp"
+#include "levelray/normal/difference_of_interpolations.hpp"
+#include "levelray/normal/interpolation_of_differences.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace levelray {
+
+using NormalSchemes = std::tuple<InterpolationOfDifferences, DifferenceOfInterpolations, AnalyticNormal>;
+
+// The unit normal of the scheme, towards positive values. Where its gradient is zero or not finite the
+// analytic one is taken, and where that is too (all samples around are equal), +z.
+template <class Scheme>
+Vec3d unit_normal(const BlockGrid& grid, const CellPosition& at) {
+  const auto normalized = [](Vec3d g, Vec3d& unit) {
+    // Scale first: a grid of 10^-20 units per voxel has gradients whose squares underflow in nothing but
+    // float, yet grids of 10^-200 are as legal.
+    const double largest = std::max({std::fabs(g.x), std::fabs(g.y), std::fabs(g.z)});
+    if (!(largest > 0 && std::isfinite(largest))) return false;
+    g /= largest;
+    unit = g / std::sqrt(g.dot(g));
+    return true;
+  };
+  Vec3d unit;
+  if (normalized(Scheme::gradient(grid, at), unit)) return unit;
+  if (normalized(AnalyticNormal::gradient(grid, at), unit)) return unit;
+  return Vec3d(0, 0, 1);
+}
+
+} // namespace levelray

@@ -1,0 +1,45 @@
+#include "levelray/trace/hit_normals.hpp"
+
+#include "levelray/core/error.hpp"
+#include "levelray/normal/normals.hpp"
+#include "levelray/trace/level_set.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace levelray {
+
+namespace {
+
+CellPosition cell_position(const GridTransform& transform, const WorldRay& ray, const Hit& hit) {
+  CellPosition at;
+  at.cell = hit.cell;
+  const Vec3d p = transform.to_voxel(ray.at(hit.t));
+  for (int a = 0; a < 3; ++a) at.local[a] = std::clamp(p[a] - hit.cell[a], 0.0, 1.0);
+  return at;
+}
+
+} // namespace
+
+void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std::span<const Hit> hits,
+                 std::string_view scheme, std::span<Vec3f> normals) {
+  assert(rays.size() == hits.size() && hits.size() == normals.size());
+  const BlockGrid& grid = level_set.grid();
+  const auto work = [&]<class Scheme>(Scheme) {
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      normals[i] = hits[i] ? Vec3f(unit_normal<Scheme>(grid, cell_position(grid.transform, rays[i], hits[i])))
+                           : Vec3f(0, 0, 0);
+  };
+  if (visit_method<NormalSchemes>(scheme, work)) return;
+  std::string names;
+  for (const std::string& known : method_names<NormalSchemes>()) names += (names.empty() ? "" : ", ") + known;
+  throw Error(ErrorKind::usage, "unknown normal scheme '" + std::string(scheme) + "'; legal are " + names);
+}
+
+Vec3f hit_normal(const LevelSet& level_set, const WorldRay& ray, const Hit& hit, std::string_view scheme) {
+  Vec3f normal;
+  hit_normals(level_set, {&ray, 1}, {&hit, 1}, scheme, {&normal, 1});
+  return normal;
+}
+
+} // namespace levelray
