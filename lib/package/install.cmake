@@ -28,6 +28,7 @@ levelray_pkg_config(levelray "${PROJECT_DESCRIPTION}" "Imath tbb fmt libhwy open
 levelray_pkg_config(levelray_io "Files and pictures for levelray" "levelray OpenEXR libpng" "-llevelray_io")
 levelray_pkg_config(levelray_vdb "OpenVDB files for levelray" "levelray" "-llevelray_vdb -lopenvdb")
 
+install(TARGETS levelray-vdb-reader DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/levelray)
 if(TARGET levelray_program)
   install(TARGETS levelray_program DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

@@ -2,9 +2,11 @@
 #include "levelray/grid/complete_blocks.hpp"
 #include "levelray/vdb/level_set_check.hpp"
 #include "levelray/vdb/read_local.hpp"
+#include "levelray/vdb/reader_process.hpp"
 #include "levelray/vdb/vdb_file.hpp"
 
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -36,15 +38,16 @@ void check_is_vdb(const std::string& path) {
 
 VdbFile read_vdb(const std::string& path, const VdbReadOptions& options) {
   check_is_vdb(path);
-  VdbFile file = read_vdb_here(path, options);
+  VdbFile file =
+      options.trust_input ? read_vdb_here(path, options) : read_in_child(path, options, /*list_only=*/false);
   complete_blocks(file.grid, options.max_memory);
   for (std::string& remark : level_set_remarks(file.grid)) file.warnings.push_back(std::move(remark));
   return file;
 }
 
-std::vector<VdbGridInfo> list_vdb(const std::string& path, const VdbReadOptions&) {
+std::vector<VdbGridInfo> list_vdb(const std::string& path, const VdbReadOptions& options) {
   check_is_vdb(path);
-  return list_vdb_here(path);
+  return options.trust_input ? list_vdb_here(path) : read_in_child(path, options, /*list_only=*/true).grids;
 }
 
 } // namespace levelray

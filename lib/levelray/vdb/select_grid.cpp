@@ -27,16 +27,25 @@ std::vector<std::size_t> named(const std::vector<VdbGridInfo>& grids, const std:
   return found;
 }
 
+bool is_scalar(const VdbGridInfo& grid) {
+  return grid.type == "float" || grid.type == "double";
+}
+
+// How to name grid `index`.
+std::string example(const std::vector<VdbGridInfo>& grids, std::size_t index) {
+  const std::string& name = grids[index].name;
+  return !name.empty() && named(grids, name).size() == 1 ? '"' + name + '"' : fmt::format("[{}]", index);
+}
+
 } // namespace
 
 std::string grid_list(const std::vector<VdbGridInfo>& grids) {
   std::string list;
   for (std::size_t i = 0; i < grids.size(); ++i) {
     const VdbGridInfo& g = grids[i];
-    const bool scalar = g.type == "float" || g.type == "double";
     const std::string item =
         fmt::format("{}{}{} [{}]", i ? ", " : "", g.name, g.name.empty() ? fmt::format("[{}]", i) : "",
-                    scalar && g.grid_class != "unknown" ? g.grid_class : g.type);
+                    is_scalar(g) && g.grid_class != "unknown" ? g.grid_class : g.type);
     if (list.size() + item.size() > 240) return list + fmt::format(", and {} more", grids.size() - i);
     list += item;
   }
@@ -60,9 +69,11 @@ std::size_t select_grid(const std::vector<VdbGridInfo>& grids, const std::string
     if (level_sets.size() == 1) return level_sets[0];
     if (level_sets.empty() && possible.size() == 1) return possible[0];
     if (level_sets.size() > 1 || possible.size() > 1)
-      fail("several grids could be meant; name one, for example " +
-           (level_sets.empty() ? fmt::format("[{}]", possible[0]) : fmt::format("[{}]", level_sets[0])));
-    if (grids.size() == 1) return 0; // whose note is the reason
+      fail("several grids could be meant; name one, such as " +
+           example(grids, level_sets.empty() ? possible[0] : level_sets[0]));
+    if (grids.size() == 1) return 0;      // whose note is the reason
+    for (const VdbGridInfo& grid : grids) // one that nearly is
+      if (is_scalar(grid)) fail(fmt::format("no level set: grid \"{}\" {}", grid.name, grid.note));
     fail("no level set");
   }
 
