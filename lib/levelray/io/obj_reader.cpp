@@ -58,7 +58,7 @@ class ObjReader {
   void reserve();
   void read_line();
   void read_vertex(const char* line);
-  void read_face(const char* line);
+  void read_face(const char* line, std::size_t keyword_length);
   std::uint64_t read_corner();
   bool next_word();
   void skip_logical_line();
@@ -127,7 +127,7 @@ void ObjReader::read_line() {
   const char first = *line;
   const bool short_word = cursor_.end - line > 1 && (is_space(line[1]) || line[1] == '\\');
   if (short_word && first == 'v') return read_vertex(line);
-  if (short_word && first == 'f') return read_face(line);
+  if (short_word && first == 'f') return read_face(line, 1);
   if (first == '#') return cursor_.skip_rest_of_line();
   if (first == '\\' || first == '\0' || (first > 0 && first < ' '))
     source_.fail(line, fmt::format("unexpected byte 0x{:02X}; the file is damaged or no text",
@@ -139,7 +139,7 @@ void ObjReader::read_line() {
     return builder_.truncated(line, word == "v" ? "incomplete vertex" : "incomplete face"),
            cursor_.skip_rest_of_line();
   if (word == "vt" || word == "vn") return skip_logical_line();
-  if (word == "fo") return read_face(line); // an older word for f
+  if (word == "fo") return read_face(line, 2); // an older word for f
   if (word == "l" || word == "p") {
     lines_.add(line);
     return skip_logical_line();
@@ -208,9 +208,9 @@ std::uint64_t ObjReader::read_corner() {
   return count - back;
 }
 
-void ObjReader::read_face(const char* line) {
+void ObjReader::read_face(const char* line, std::size_t keyword_length) {
   corners_.clear();
-  cursor_.word();
+  cursor_.at = line + keyword_length;
   while (next_word()) {
     corners_.push_back(read_corner());
     if (corners_.size() > max_polygon_corners)

@@ -25,6 +25,14 @@ constexpr double planar_tolerance = 1e-5;
 bool finite(const Vec3d& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
+
+// Whether a triangle's area cannot be told from 0. An edge's component has a relative error of 2^-53, a
+// product of two 3 * 2^-53, their difference another 2^-53 of itself: together below 8 * 2^-53 of |e||f|.
+bool without_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d e = b - a, f = c - a, n = e.cross(f);
+  const double bound = 0x1p-50 * e.length() * f.length();
+  return std::abs(n.x) <= bound && std::abs(n.y) <= bound && std::abs(n.z) <= bound;
+}
 } // namespace
 
 SoupBuilder::SoupBuilder(MeshSource& source, const MeshReadOptions& options)
@@ -191,10 +199,8 @@ void SoupBuilder::write_remarks() {
 
   // Triangles without area: kept, because distances to them are right; counted, because signs need to know.
   std::uint64_t flat = 0;
-  for (const Triangle& t : mesh_.triangles) {
-    const Vec3d& a = mesh_.vertices[t[0]];
-    if ((mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a) == Vec3d(0, 0, 0)) ++flat;
-  }
+  for (const Triangle& t : mesh_.triangles)
+    if (without_area(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]])) ++flat;
   if (flat != 0)
     warn(fmt::format("{}: {} without area (corners in a line or at one place)", source_.name(),
                      flat == 1 ? std::string("1 triangle is") : fmt::format("{} triangles are", flat)));
