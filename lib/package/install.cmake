@@ -12,8 +12,9 @@ foreach(library levelray levelray_io levelray_vdb)
   install(EXPORT ${library} NAMESPACE levelray:: FILE ${library}-targets.cmake DESTINATION ${package_dir})
 endforeach()
 
+set(reader_path ${CMAKE_INSTALL_LIBEXECDIR}/levelray/levelray-vdb-reader)
 configure_package_config_file(lib/package/config.cmake.in ${PROJECT_BINARY_DIR}/package/levelrayConfig.cmake
-                              INSTALL_DESTINATION ${package_dir})
+                              INSTALL_DESTINATION ${package_dir} PATH_VARS reader_path)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/levelrayConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/levelrayConfig.cmake ${PROJECT_BINARY_DIR}/package/levelrayConfigVersion.cmake
               lib/package/dependencies.cmake DESTINATION ${package_dir})

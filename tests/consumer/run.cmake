@@ -11,8 +11,7 @@ file(RENAME ${WORK_DIR}/first ${WORK_DIR}/prefix) # an installation holds no pat
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${WORK_DIR}/build -G Ninja -D CMAKE_BUILD_TYPE=Release
     -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_CXX_FLAGS=${FLAGS})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-run(${WORK_DIR}/build/consumer ${WORK_DIR})
-run(${WORK_DIR}/build/consumer_of_the_numerics)
+run(${CMAKE_CTEST_COMMAND} --test-dir ${WORK_DIR}/build --output-on-failure --no-tests=error)
 run(${WORK_DIR}/prefix/bin/levelray --version)
 
 # The same through pkg-config, where there is one.
@@ -23,6 +22,7 @@ if(NOT PKG_CONFIG)
 endif()
 file(GLOB pc_dir ${WORK_DIR}/prefix/lib*/pkgconfig ${WORK_DIR}/prefix/lib/*/pkgconfig)
 set(ENV{PKG_CONFIG_PATH} ${pc_dir})
+set(ENV{LEVELRAY_VDB_READER} ${WORK_DIR}/prefix/libexec/levelray/levelray-vdb-reader)
 execute_process(COMMAND ${PKG_CONFIG} --cflags --libs levelray_vdb levelray_io levelray
                 OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(flags UNIX_COMMAND "${flags} ${FLAGS}")

@@ -25,7 +25,7 @@ struct Hit {
   double t_outside = 0; // the last point, before t, whose value is proven to lie safely on the ray's starting
                         // side: start secondary rays there, without an epsilon; the ray's beginning where
                         // there is no such point
-  Vec3i cell{0, 0, 0}; // the cell that holds the hit
+  Vec3i cell{0, 0, 0};  // the cell that holds the hit
   RayCounts counts;
 
   explicit operator bool() const { return status == HitStatus::hit; }

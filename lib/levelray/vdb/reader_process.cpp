@@ -36,6 +36,8 @@ std::string find_reader() {
       if (::access(candidate.c_str(), X_OK) == 0) return candidate;
     }
   }
+  if (::access(LEVELRAY_LIBEXECDIR "/levelray-vdb-reader", X_OK) == 0)
+    return LEVELRAY_LIBEXECDIR "/levelray-vdb-reader";
   throw Error(ErrorKind::failed, "cannot find the program levelray-vdb-reader that reads .vdb files safely; "
                                  "set LEVELRAY_VDB_READER to its "
                                  "path, or trust the input to read it without");

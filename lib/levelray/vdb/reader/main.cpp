@@ -11,8 +11,8 @@
 #include "levelray/vdb/read_local.hpp"
 
 #include <cerrno>
-#include <csignal>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
