@@ -5,5 +5,7 @@ set(levelray_packages Imath TBB fmt hwy OpenMesh)
 set(levelray_io_packages OpenEXR PNG nlohmann_json)
 set(levelray_vdb_packages OpenVDB)
 
-# OpenVDB brings a find module instead of a configuration file.
+# OpenVDB brings a find module instead of a configuration file, and beside it modules for packages that have one: take
+# those packages' own word.
+set(CMAKE_FIND_PACKAGE_PREFER_CONFIG ON)
 list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)

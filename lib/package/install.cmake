@@ -32,4 +32,5 @@ levelray_pkg_config(levelray_vdb "OpenVDB files for levelray" "levelray" "-lleve
 install(TARGETS levelray-vdb-reader DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/levelray)
 if(TARGET levelray_program)
   install(TARGETS levelray_program DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES apps/levelray/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME levelray)
 endif()

@@ -31,7 +31,7 @@ void limit(__rlimit_resource what, rlim_t value) {
 }
 
 // The bytes of address space in use now: libraries and stacks, which are no fault of the file.
-std::uint64_t address_space() {
+[[maybe_unused]] std::uint64_t address_space() {
   unsigned long pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
     if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
