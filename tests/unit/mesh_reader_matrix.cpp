@@ -372,7 +372,7 @@ TEST_CASE("row 22: all PLY count types, texture lists, extra properties and any 
   same(header("int32", "int32") + body(std::int32_t{}, std::int32_t{}, "", ""));
   // A texture list and a scalar around the indices.
   const std::string list = "property list uchar float texcoord\n", scalar = "property uchar red\n";
-  const std::string texture = "\2" + bytes_of(0.5f) + bytes_of(0.25f);
+  const std::string texture = std::string(1, '\2') + bytes_of(0.5f) + bytes_of(0.25f);
   std::string wide = header("uchar", "int");
   const std::size_t indices = wide.find("property list");
   wide.insert(indices, scalar + list);
