@@ -1,0 +1,244 @@
+#include "levelray/convert/mesh_to_grid.hpp"
+
+#include "levelray/convert/assemble.hpp"
+#include "levelray/core/error.hpp"
+#include "levelray/core/parallel.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace levelray {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double longest_side(const Box3d& box) {
+  const Vec3d size = box.size();
+  return std::max({size.x, size.y, size.z});
+}
+
+// Sample (0,0,0) lies at the world's origin, as OpenVDB's tools have it, unless indices would grow so large
+// that voxel-space doubles or OpenVDB's int32 coordinates suffer; then at a multiple of the voxel near the
+// mesh.
+GridTransform transform_for(const Box3d& bounds, double voxel_size) {
+  GridTransform transform;
+  transform.voxel_size = voxel_size;
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max({largest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
+  if (largest / voxel_size > 1 << 20)
+    for (int axis = 0; axis < 3; ++axis)
+      transform.origin[axis] =
+          std::round((bounds.min[axis] + bounds.max[axis]) / 2 / voxel_size) * voxel_size;
+  return transform;
+}
+
+// The nodes that the band may touch, and one more on each side.
+NodeBox node_box(const Box3d& bounds, const GridTransform& transform, double reach) {
+  NodeBox box;
+  const Vec3d lo = transform.to_voxel(bounds.min), hi = transform.to_voxel(bounds.max);
+  for (int axis = 0; axis < 3; ++axis) {
+    const int first = static_cast<int>(std::floor((lo[axis] - reach) / node_dim)) - 1;
+    const int last = static_cast<int>(std::floor((hi[axis] + reach) / node_dim)) + 1;
+    box.node_min[axis] = first;
+    box.dims[axis] = last - first + 1;
+  }
+  return box;
+}
+
+double total_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const Triangle& t : mesh.triangles)
+    area += (mesh.vertices[t[1]] - mesh.vertices[t[0]])
+                .cross(mesh.vertices[t[2]] - mesh.vertices[t[0]])
+                .length() /
+            2;
+  return area;
+}
+
+double voxel_size_of(const PreparedMesh& mesh, const ConvertOptions& options) {
+  const double longest = longest_side(mesh.report.bounds);
+  if (options.voxel_size == 0) {
+    if (options.resolution < 1)
+      throw Error(ErrorKind::usage, fmt::format("resolution must be at least 1, not {}", options.resolution));
+    return longest / options.resolution;
+  }
+  if (!(options.voxel_size > 0) || !std::isfinite(options.voxel_size))
+    throw Error(ErrorKind::usage,
+                fmt::format("voxel size must be a finite number > 0, not {}", options.voxel_size));
+  if (options.voxel_size > longest)
+    throw Error(ErrorKind::usage,
+                fmt::format("voxel size {:.6g} is larger than the mesh, whose longest side is {:.6g}; "
+                            "try --voxel {:.3g} or --resolution 256",
+                            options.voxel_size, longest, longest / 256));
+  return options.voxel_size;
+}
+
+// Why the signs are what they are, in words for the user.
+std::string sign_reason(const PreparedMesh& mesh, SignMethod asked, SignMethod used) {
+  const std::string facts =
+      mesh.open_edges.empty()
+          ? std::string("the mesh encloses its volume, so its winding number is an integer, counted exactly")
+          : fmt::format("the mesh has {} open edges in {} holes: inside is where its generalised winding "
+                        "number exceeds 1/2",
+                        mesh.open_edges.size(), mesh.report.boundary_loops);
+  if (asked == SignMethod::automatic || used == SignMethod::winding) return facts;
+  switch (used) {
+  case SignMethod::winding_abs:
+    return "asked for: inside is where the winding number's magnitude exceeds 1/2";
+  case SignMethod::flood:
+    return "asked for: outside is what can be reached from outside without crossing the surface";
+  case SignMethod::pseudonormal:
+    return "asked for: the side of the nearest feature's pseudonormal";
+  default:
+    return "asked for: no sign, all distances positive";
+  }
+}
+
+void check_inside(const PreparedMesh& mesh, const BlockGrid& grid, double voxel_size,
+                  std::uint64_t thin_places, ConvertReport& report) {
+  if (report.sign == SignMethod::unsigned_distance) return;
+  if (report.inside_samples == 0)
+    throw Error(ErrorKind::bad_input,
+                fmt::format("no enclosed volume: no sample lies inside ({}); use --sign unsigned, a closed "
+                            "mesh, or a voxel smaller than {:.4g}",
+                            mesh.report.closed
+                                ? "the mesh is closed but thinner than a voxel, or has no thickness"
+                                : fmt::format("the mesh has {} open edges", mesh.open_edges.size()),
+                            voxel_size));
+  const double share =
+      static_cast<double>(report.inside_samples) / static_cast<double>(grid.active_sample_count());
+  if (!mesh.open_edges.empty() && share < 0.2)
+    report.warnings.push_back(fmt::format(
+        "only {:.1f} % of the band lies inside: much of this open surface bounds no volume and is lost; "
+        "--sign unsigned keeps its distances",
+        100 * share));
+  // A few grazed bumps and creases are in every mesh; parts that are thin meet an edge twice in a good share
+  // of their blocks.
+  if (thin_places > grid.block_count() / 50)
+    report.warnings.push_back(fmt::format(
+        "the surface folds back within one voxel at {} places: parts thinner than {:.4g} may be lost; "
+        "try --voxel {:.3g}",
+        thin_places, voxel_size, voxel_size / 2));
+}
+
+} // namespace
+
+const std::vector<std::string>& sign_method_names() {
+  static const std::vector<std::string> names{"auto",        "pseudonormal", "winding",
+                                              "winding-abs", "flood",        "unsigned"};
+  return names;
+}
+
+ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& options) {
+  if (!(options.half_width_voxels >= 1) || options.half_width_voxels > 1000)
+    throw Error(ErrorKind::usage,
+                fmt::format("the band's half-width must be between 1 and 1000 voxels, not {}",
+                            options.half_width_voxels));
+  ConvertPlan plan;
+  plan.voxel_size = voxel_size_of(mesh, options);
+  const Vec3d size = mesh.report.bounds.size() / plan.voxel_size;
+  const double band = 2 * options.half_width_voxels;
+
+  // A sheet of area A has A * 2H samples within H; blocks that meet it are about A * (2H + 4.3) / 64,
+  // measured on closed meshes. Thin or folded surfaces have fewer, never more than the box holds.
+  const double area = total_area(mesh.mesh) / (plan.voxel_size * plan.voxel_size);
+  const double box_samples = (size.x + band + 1) * (size.y + band + 1) * (size.z + band + 1);
+  const double samples = std::min(area * band + 100, box_samples);
+  const double blocks = std::min(area * (band + 4.3) / 64, box_samples / 64) + 8;
+  double nodes = 1;
+  for (int axis = 0; axis < 3; ++axis) nodes *= std::ceil((size[axis] + band) / node_dim) + 3;
+
+  // Per block: the values twice (band, grid), masks and components; per node: table, regions; per triangle:
+  // the voxel mesh, bins.
+  const double bytes =
+      blocks * (2 * 256 + 96) + nodes * 600 + static_cast<double>(mesh.mesh.triangles.size()) * 120;
+  constexpr double max_nodes = 2147483647.0;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::limit,
+                fmt::format("size {:.4g} x {:.4g} x {:.4g} with voxel {:.4g} needs about {:.2g} band samples "
+                            "and {:.3g} GiB; {}",
+                            mesh.report.bounds.size().x, mesh.report.bounds.size().y,
+                            mesh.report.bounds.size().z, plan.voxel_size, samples, bytes / (1 << 30), why));
+  };
+  if (!(nodes < max_nodes))
+    refuse(fmt::format("the largest grid has {:.2g} nodes of 16^3, this one {:.2g}", max_nodes, nodes));
+  if (options.max_memory != 0 && !(bytes <= static_cast<double>(options.max_memory)))
+    refuse(fmt::format("the limit is {:.3g} GiB (--max-memory)",
+                       static_cast<double>(options.max_memory) / (1 << 30)));
+
+  for (int axis = 0; axis < 3; ++axis) plan.dims[axis] = static_cast<int>(std::ceil(size[axis] + band)) + 1;
+  plan.active_samples = static_cast<std::uint64_t>(samples);
+  plan.bytes = static_cast<std::uint64_t>(bytes);
+  plan.seconds = samples * 60e-9 + static_cast<double>(mesh.mesh.triangles.size()) * 1e-6;
+  return plan;
+}
+
+ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& options) {
+  const ConvertPlan plan = plan_conversion(mesh, options);
+  const auto progress = [&](const char* stage, double done) {
+    if (options.progress) options.progress(stage, done);
+  };
+  ConvertedGrid result;
+  ConvertReport& report = result.report;
+  report.sign = options.sign == SignMethod::automatic ? SignMethod::winding : options.sign;
+  if (report.sign == SignMethod::pseudonormal)
+    throw Error(ErrorKind::usage,
+                "--sign pseudonormal is not there yet; legal: auto, winding, winding-abs, flood, unsigned");
+  report.sign_reason = sign_reason(mesh, options.sign, report.sign);
+
+  // Distances: unsigned, per node, with what the sheets separate.
+  const Clock::time_point distance_start = Clock::now();
+  const GridTransform transform = transform_for(mesh.report.bounds, plan.voxel_size);
+  const VoxelMesh voxel_mesh = make_voxel_mesh(mesh, transform);
+  const double reach = std::max(options.half_width_voxels, sign_reach);
+  BandOptions band_options;
+  band_options.half_width_voxels = options.half_width_voxels;
+  band_options.counting = counting_for(report.sign);
+  band_options.find_components = report.sign != SignMethod::unsigned_distance;
+
+  Band band;
+  band.box = node_box(mesh.report.bounds, transform, reach);
+  const NodeBins bins = bin_triangles(voxel_mesh, band.box, reach, sign_reach);
+  band.node_at.assign(band.box.count(), Band::untouched);
+  for (std::size_t i = 0; i < bins.node.size(); ++i)
+    band.node_at[bins.node[i]] = static_cast<std::int32_t>(i);
+  band.nodes.resize(bins.node.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for(bins.node.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      band.nodes[i] = make_node_band(voxel_mesh, band.box.coord(bins.node[i]), bins.list(i), band_options);
+    progress("distance", static_cast<double>(done += end - begin) / static_cast<double>(bins.node.size()));
+  });
+  report.distance_ms = ms_since(distance_start);
+
+  // Signs.
+  const Clock::time_point sign_start = Clock::now();
+  const BoundaryWinding boundary(voxel_mesh);
+  Regions regions;
+  if (band_options.find_components) regions = join_regions(band, band_options.counting);
+  std::vector<NodeSides> sides(band.box.count());
+  parallel_for(sides.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) sides[n] = node_sides(band, regions, boundary, report.sign, n);
+    progress("sign", static_cast<double>(end) / static_cast<double>(sides.size()));
+  });
+  report.sign_ms = ms_since(sign_start);
+
+  std::uint64_t thin_places = 0;
+  for (const NodeBand& node : band.nodes) thin_places += static_cast<std::uint64_t>(node.thin_places);
+  const Clock::time_point assemble_start = Clock::now();
+  result.grid = assemble_grid(band, sides, transform, options.half_width_voxels, &report.inside_samples);
+  report.distance_ms += ms_since(assemble_start);
+  check_inside(mesh, result.grid, plan.voxel_size, thin_places, report);
+  return result;
+}
+
+} // namespace levelray

@@ -1,0 +1,27 @@
+// From regions and windings to one bit per sample: inside or outside.
+#pragma once
+
+#include "levelray/convert/boundary_winding.hpp"
+#include "levelray/convert/mesh_to_grid.hpp"
+#include "levelray/convert/regions.hpp"
+
+#include <array>
+
+namespace levelray {
+
+// The sides of a node's samples: uniform, or one mask per block (bit set: inside).
+struct NodeSides {
+  bool uniform = true;
+  bool inside = false;                    // when uniform
+  std::array<std::uint64_t, 64> blocks{}; // when not
+};
+
+// Which lattice-edge counting a method needs.
+SheetCounting counting_for(SignMethod method);
+
+// The sides of all samples of table entry `n`. `pseudonormal_sides` (see pseudonormal_sign.hpp) is used by
+// that method only. Never touches a distance.
+NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWinding& boundary,
+                     SignMethod method, std::size_t n);
+
+} // namespace levelray
