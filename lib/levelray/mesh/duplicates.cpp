@@ -16,7 +16,7 @@ struct Member {
   bool up;
   friend auto operator<=>(const Member&, const Member&) = default;
 };
-using Group = std::vector<Member>; // ascending by triangle, at least two
+using Group = std::vector<Member>; // ascending by triangle, at least two of the same apex
 
 // Every triple is looked at where its two lowest vertices meet.
 std::vector<Group> find_groups(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
@@ -48,6 +48,43 @@ struct Balance {
   std::uint64_t kept_odd = 0, dropped_odd = 0; // edges with an odd number of triangles
   bool keep() const { return (kept == 0 && dropped != 0) || dropped_odd > kept_odd; }
 };
+
+bool in_first_half(const Group& group, std::uint32_t triangle) {
+  for (std::size_t i = 0; i < std::max<std::size_t>(1, group.size() / 2); ++i)
+    if (group[i].triangle == triangle) return true;
+  return false;
+}
+
+// The triangles of shells that are double-sided almost everywhere, and either all of the mesh is or half of
+// them is closed.
+std::vector<bool> find_double_sided(const std::vector<Triangle>& triangles, const EdgeTable& edges,
+                                    const std::vector<Group>& groups, const std::vector<bool>& paired) {
+  const auto [shell, shells] = find_shells(triangles.size(), edges);
+  std::vector<std::uint64_t> size(shells, 0), in_pairs(shells, 0);
+  std::uint64_t all_pairs = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    ++size[shell[t]];
+    in_pairs[shell[t]] += paired[t];
+    all_pairs += paired[t];
+  }
+  const auto nearly = [](std::uint64_t part, std::uint64_t all) { return 10 * part >= 9 * all; };
+  std::vector<bool> single(shells);
+  for (std::uint32_t s = 0; s < shells; ++s) single[s] = nearly(in_pairs[s], size[s]);
+  if (!nearly(all_pairs, triangles.size())) {
+    std::vector<bool> stays(triangles.size(), true);
+    for (const Group& group : groups)
+      for (const Member& m : group)
+        stays[m.triangle] = !paired[m.triangle] || in_first_half(group, m.triangle);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      int count = 0;
+      for (const std::uint32_t h : edges.of(e)) count += stays[h / 3];
+      if (count % 2 != 0) single[shell[edges.of(e)[0] / 3]] = false;
+    }
+  }
+  std::vector<bool> out(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) out[t] = single[shell[t]];
+  return out;
+}
 
 } // namespace
 
@@ -101,27 +138,17 @@ Duplicates find_duplicates(const std::vector<Triangle>& triangles, const EdgeTab
     b.kept_odd += count % 2, b.dropped_odd += count_without % 2;
   }
 
-  // Find shells that are double-sided almost everywhere.
-  std::vector<bool> single(triangles.size(), false);
-  if (single_double_sided && out.opposite > 0) {
-    const auto [shell, shells] = find_shells(triangles.size(), edges);
-    std::vector<std::uint64_t> size(shells, 0), in_pairs(shells, 0);
-    for (std::size_t t = 0; t < triangles.size(); ++t) ++size[shell[t]], in_pairs[shell[t]] += paired[t];
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      single[t] = paired[t] && 10 * in_pairs[shell[t]] >= 9 * size[shell[t]];
-  }
-
+  // Drop the later half of the groups in shells that are double-sided, and else what is repeated.
+  const std::vector<bool> single = single_double_sided && out.opposite > 0
+                                       ? find_double_sided(triangles, edges, groups, paired)
+                                       : std::vector<bool>(triangles.size(), false);
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     if (group_of[t] == no_index) continue;
     const Group& group = groups[group_of[t]];
-    const bool second = single[t] && group.front().triangle != t;
-    const bool again = repeated[t] && !balance[sets.find(group_of[t])].keep();
-    if (!second && !again) continue;
-    out.dropped.push_back(t);
-    if (again)
-      ++out.dropped_same;
-    else
-      ++out.dropped_opposite;
+    if (single[t] && paired[t]) {
+      if (!in_first_half(group, t)) out.dropped.push_back(t), ++out.dropped_opposite;
+    } else if (repeated[t] && !balance[sets.find(group_of[t])].keep())
+      out.dropped.push_back(t), ++out.dropped_same;
   }
   return out;
 }

@@ -20,9 +20,10 @@ struct Duplicates {
 // dropping would leave more edges with an odd number of triangles (two tetrahedra on a doubled face;
 // whichever way it is oriented).
 //
-// Opposite pairs stay: they cancel in the winding number. Only in a shell (connected over edges) of which at
-// least 90 % are in pairs, which encloses nothing that way, all but the first of each triple are dropped,
-// when `single_double_sided`.
+// Opposite pairs stay: they cancel in the winding number. But where at least 90 % of a shell (connected over
+// edges) is in pairs it encloses nothing that way; then, when `single_double_sided`, the later half of each
+// group of triangles over the same vertices is dropped, if that is how at least 90 % of the whole mesh are,
+// or if the other half of the shell is closed (has an even number of triangles at each edge).
 Duplicates find_duplicates(const std::vector<Triangle>& triangles, const EdgeTable& edges,
                            bool single_double_sided);
 

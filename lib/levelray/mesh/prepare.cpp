@@ -105,9 +105,9 @@ void warn(PreparedMesh& out, const Duplicates& duplicates, const PrepareOptions&
     add("a part of the mesh is one-sided and has no inside (Moebius strip)");
   const char* const trusted = "; left as it is, as asked";
   if (r.orientation == Orientation::mixed || r.winding_clashes > 0)
-    add(fmt::format("faces are oriented inconsistently ({} edges clash){}", r.winding_clashes,
-                    options.trust_orientation ? trusted
-                                              : fmt::format("; {} faces turned", r.flipped_triangles)));
+    add(fmt::format(
+        "faces are oriented inconsistently, {} edges between two faces clash{}", r.winding_clashes,
+        options.trust_orientation ? trusted : fmt::format("; {} faces turned", r.flipped_triangles)));
   else if (r.orientation == Orientation::inverted)
     add(fmt::format("the mesh is inside out{}",
                     options.trust_orientation ? trusted

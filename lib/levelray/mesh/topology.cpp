@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <tuple>
 
 namespace levelray {
@@ -139,9 +140,13 @@ std::uint64_t count_without_area(const TriangleMesh& mesh) {
     const Vec3d &a = mesh.vertices[ia], &b = mesh.vertices[ib], &c = mesh.vertices[ic];
     const Vec3d u = b - a, v = c - a;
     // Each component of the cross product is a difference of two products of rounded differences: four
-    // roundings of at most |u||v| each, and sqrt(3) of that for the vector.
-    const double rounding = 4 * std::numeric_limits<double>::epsilon();
-    count += !(u.cross(v).length() > rounding * u.length() * v.length());
+    // roundings of at most |u||v| each. The corners were rounded when they were read: half an ulp of the
+    // largest coordinate each.
+    double largest = 0;
+    for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(a[i]), std::abs(b[i]), std::abs(c[i])});
+    const double lu = u.length(), lv = v.length();
+    const double rounding = std::numeric_limits<double>::epsilon() * (4 * lu * lv + 2 * largest * (lu + lv));
+    count += !(u.cross(v).length() > rounding);
   }
   return count;
 }
