@@ -146,9 +146,16 @@ Duplicates find_duplicates(const std::vector<Triangle>& triangles, const EdgeTab
     if (group_of[t] == no_index) continue;
     const Group& group = groups[group_of[t]];
     if (single[t] && paired[t]) {
-      if (!in_first_half(group, t)) out.dropped.push_back(t), ++out.dropped_opposite;
-    } else if (repeated[t] && !balance[sets.find(group_of[t])].keep())
-      out.dropped.push_back(t), ++out.dropped_same;
+      if (in_first_half(group, t)) continue;
+      out.dropped.push_back(t);
+      ++out.dropped_opposite;
+    } else if (repeated[t] && !balance[sets.find(group_of[t])].keep()) {
+      out.dropped.push_back(t);
+      ++out.dropped_same;
+    } else {
+      out.kept_same += repeated[t];
+      out.kept_opposite += paired[t] && group.front().triangle == t;
+    }
   }
   return out;
 }

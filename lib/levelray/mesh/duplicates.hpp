@@ -10,8 +10,9 @@ struct Duplicates {
   std::uint64_t same = 0;             // triangles with an earlier one of the same vertices and orientation
   std::uint64_t opposite = 0;         // vertex triples that have triangles of both orientations
   std::vector<std::uint32_t> dropped; // ascending
-  std::uint64_t dropped_same = 0;
-  std::uint64_t dropped_opposite = 0;
+  std::uint64_t dropped_same = 0;     // because they are repeated
+  std::uint64_t dropped_opposite = 0; // because their shell is double-sided
+  std::uint64_t kept_same = 0, kept_opposite = 0; // repeated triangles and pairs that stay
 };
 
 // A repeated triangle is dropped, unless the mesh is closed because of it. That is decided for each cluster

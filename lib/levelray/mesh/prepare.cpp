@@ -113,15 +113,15 @@ void warn(PreparedMesh& out, const Duplicates& duplicates, const PrepareOptions&
                     options.trust_orientation ? trusted
                                               : fmt::format("; all {} faces turned", r.flipped_triangles)));
   if (duplicates.dropped_same > 0) add(fmt::format("{} duplicate faces dropped", duplicates.dropped_same));
-  if (duplicates.same > duplicates.dropped_same)
+  if (duplicates.kept_same > 0)
     add(fmt::format("{} duplicate faces kept, because the mesh is closed with them only",
-                    duplicates.same - duplicates.dropped_same));
+                    duplicates.kept_same));
   if (duplicates.dropped_opposite > 0)
     add(fmt::format("{} faces are doubled in both orientations, which encloses nothing; one of each kept",
                     duplicates.dropped_opposite));
-  if (duplicates.opposite > duplicates.dropped_opposite)
+  if (duplicates.kept_opposite > 0)
     add(fmt::format("{} pairs of opposite faces have no thickness and enclose nothing",
-                    duplicates.opposite - duplicates.dropped_opposite));
+                    duplicates.kept_opposite));
   if (r.degenerate_triangles > 0) add(fmt::format("{} faces have no area", r.degenerate_triangles));
 }
 

@@ -134,21 +134,29 @@ void count_topology(const TriangleMesh& mesh, const EdgeTable& edges, MeshReport
   report.components = components.labels().second;
 }
 
+bool has_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  // Each component of the cross product is a difference of two products of rounded differences: four
+  // roundings of at most |u||v| each. The corners were rounded when they were read: half an ulp of the
+  // largest coordinate each.
+  const Vec3d u = b - a, v = c - a;
+  double largest = 0;
+  for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(a[i]), std::abs(b[i]), std::abs(c[i])});
+  const double lu = u.length(), lv = v.length();
+  const double rounding = std::numeric_limits<double>::epsilon() * (4 * lu * lv + 2 * largest * (lu + lv));
+  return u.cross(v).length() > rounding;
+}
+
 std::uint64_t count_without_area(const TriangleMesh& mesh) {
-  std::uint64_t count = 0;
-  for (const auto& [ia, ib, ic] : mesh.triangles) {
-    const Vec3d &a = mesh.vertices[ia], &b = mesh.vertices[ib], &c = mesh.vertices[ic];
-    const Vec3d u = b - a, v = c - a;
-    // Each component of the cross product is a difference of two products of rounded differences: four
-    // roundings of at most |u||v| each. The corners were rounded when they were read: half an ulp of the
-    // largest coordinate each.
-    double largest = 0;
-    for (int i = 0; i < 3; ++i) largest = std::max({largest, std::abs(a[i]), std::abs(b[i]), std::abs(c[i])});
-    const double lu = u.length(), lv = v.length();
-    const double rounding = std::numeric_limits<double>::epsilon() * (4 * lu * lv + 2 * largest * (lu + lv));
-    count += !(u.cross(v).length() > rounding);
-  }
-  return count;
+  std::atomic<std::uint64_t> total{0};
+  parallel_for(mesh.triangles.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t count = 0;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      count += !has_area(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    }
+    total += count;
+  });
+  return total;
 }
 
 double largest_part(const TriangleMesh& mesh, const std::vector<std::array<std::uint32_t, 2>>& segments) {

@@ -11,7 +11,11 @@ namespace levelray {
 // connected over edges at the vertex. Boundary loops that touch in a vertex count as one.
 void count_topology(const TriangleMesh& mesh, const EdgeTable& edges, MeshReport& report);
 
-// Triangles whose area is no more than rounding.
+// Whether the triangle's area is more than the rounding of its corners and of computing it; where it is not,
+// its normal means nothing.
+bool has_area(const Vec3d& a, const Vec3d& b, const Vec3d& c);
+
+// Triangles without an area.
 std::uint64_t count_without_area(const TriangleMesh& mesh);
 
 // The largest diagonal of the boxes around connected parts of a set of edges; 0 without edges.
