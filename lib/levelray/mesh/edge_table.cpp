@@ -77,6 +77,20 @@ std::vector<std::uint32_t> find_twins(const EdgeTable& edges) {
   return twins;
 }
 
+std::vector<OpenEdge> find_boundary_chain(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
+  std::vector<std::vector<OpenEdge>> found((edges.size() + edges_per_chunk - 1) / edges_per_chunk);
+  parallel_for(edges.size(), edges_per_chunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      int excess = 0;
+      for (const std::uint32_t h : edges.of(e)) excess += runs_up(triangles, h) ? 1 : -1;
+      if (excess != 0) found[begin / edges_per_chunk].push_back({static_cast<std::uint32_t>(e), excess});
+    }
+  });
+  std::vector<OpenEdge> all;
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 std::vector<std::uint32_t> find_edges(const EdgeTable& edges) {
   std::vector<std::uint32_t> edge_of(edges.half_edges.size());
   parallel_for(edges.size(), edges_per_chunk, [&](std::size_t begin, std::size_t end) {

@@ -49,6 +49,14 @@ EdgeTable build_edge_table(const std::vector<Triangle>& triangles, std::size_t v
 // two.
 std::vector<std::uint32_t> find_twins(const EdgeTable& edges);
 
+// The edges whose half-edges run up and down unequally often, ascending, with the difference (up minus down):
+// the oriented boundary of the triangles as a chain.
+struct OpenEdge {
+  std::uint32_t edge;
+  int excess;
+};
+std::vector<OpenEdge> find_boundary_chain(const std::vector<Triangle>& triangles, const EdgeTable& edges);
+
 // For each half-edge its edge.
 std::vector<std::uint32_t> find_edges(const EdgeTable& edges);
 

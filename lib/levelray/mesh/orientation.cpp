@@ -17,7 +17,7 @@ double triangle_area(const TriangleMesh& mesh, std::uint32_t t) {
 
 struct Patches {
   std::vector<std::uint32_t> of; // per triangle
-  std::vector<double> area;      // per patch
+  std::uint32_t count = 0;
 };
 
 // Propagates orientation through each patch, and decides which of its two classes to turn.
@@ -30,14 +30,12 @@ Patches orient_patches(const TriangleMesh& mesh, const EdgeTable& edges, Consist
   for (std::uint32_t seed = 0; seed < triangles.size(); ++seed) {
     if (patches.of[seed] != no_index) continue;
     check_cancel();
-    const auto patch = static_cast<std::uint32_t>(patches.area.size());
+    const std::uint32_t patch = patches.count++;
     queue.assign(1, seed);
     patches.of[seed] = patch;
-    double area[2] = {0, 0};                       // by class: as the seed, and against it
     std::uint64_t clashes = 0, contradictions = 0; // half-edges: of the input, and whatever is turned
     for (std::size_t i = 0; i < queue.size(); ++i) {
       const std::uint32_t t = queue[i];
-      area[out.flip[t]] += triangle_area(mesh, t);
       for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
         const std::uint32_t twin = twins[h];
         if (twin == no_index) continue;
@@ -53,13 +51,13 @@ Patches orient_patches(const TriangleMesh& mesh, const EdgeTable& edges, Consist
           contradictions += out.flip[u] != wanted;
       }
     }
-    patches.area.push_back(area[0] + area[1]);
     out.orientable &= contradictions == 0;
     if (clashes == 0) continue; // flip is 0 all over
-    if (contradictions >= clashes)
-      for (const std::uint32_t t : queue) out.flip[t] = 0;
-    else if (area[1] > area[0])
-      for (const std::uint32_t t : queue) out.flip[t] ^= 1;
+    double area[2] = {0, 0};    // as the seed, and against it
+    for (const std::uint32_t t : queue) area[out.flip[t]] += triangle_area(mesh, t);
+    const bool worse = contradictions >= clashes;
+    const std::uint8_t other = !worse && area[1] > area[0];
+    for (const std::uint32_t t : queue) out.flip[t] = worse ? 0 : out.flip[t] ^ other;
   }
   return patches;
 }
@@ -70,8 +68,9 @@ struct Junction {
 };
 
 // Turns whole patches so that the boundary chain along edges with more than two triangles gets short.
-void match_patches(const std::vector<Triangle>& triangles, const EdgeTable& edges, const Patches& patches,
+void match_patches(const TriangleMesh& mesh, const EdgeTable& edges, const Patches& patches,
                    Consistency& out) {
+  const std::vector<Triangle>& triangles = mesh.triangles;
   // Collect the junctions that patches can change.
   std::vector<Junction> junctions;
   std::vector<std::pair<std::uint32_t, int>> sums;
@@ -96,17 +95,19 @@ void match_patches(const std::vector<Triangle>& triangles, const EdgeTable& edge
     if (!junction.patches.empty()) junctions.push_back(std::move(junction));
   }
   if (!avoidable) return;
+  std::vector<double> area(patches.count, 0);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) area[patches.of[t]] += triangle_area(mesh, t);
 
-  std::vector<std::vector<std::pair<std::uint32_t, int>>> junctions_of(patches.area.size());
+  std::vector<std::vector<std::pair<std::uint32_t, int>>> junctions_of(patches.count);
   for (std::uint32_t j = 0; j < junctions.size(); ++j)
     for (const auto& [patch, sum] : junctions[j].patches) junctions_of[patch].emplace_back(j, sum);
   std::vector<std::uint32_t> order;
-  for (std::uint32_t p = 0; p < patches.area.size(); ++p)
+  for (std::uint32_t p = 0; p < patches.count; ++p)
     if (!junctions_of[p].empty()) order.push_back(p);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return patches.area[a] > patches.area[b]; });
+                   [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
 
-  std::vector<int> sign(patches.area.size(), 1), total(junctions.size(), 0);
+  std::vector<int> sign(patches.count, 1), total(junctions.size(), 0);
   const auto length_with = [&](std::uint32_t patch, int factor) { // boundary at the patch's junctions
     std::int64_t length = 0;
     for (const auto& [j, sum] : junctions_of[patch]) length += std::abs(total[j] + factor * sum);
@@ -161,7 +162,7 @@ Consistency make_consistent(const TriangleMesh& mesh, const EdgeTable& edges) {
   Consistency out;
   out.flip.assign(mesh.triangles.size(), 0);
   const Patches patches = orient_patches(mesh, edges, out);
-  match_patches(mesh.triangles, edges, patches, out);
+  match_patches(mesh, edges, patches, out);
   for (const std::uint8_t f : out.flip) out.flips += f;
   return out;
 }

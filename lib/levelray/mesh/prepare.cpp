@@ -9,7 +9,8 @@
 #include "levelray/mesh/weld.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace levelray {
@@ -35,8 +36,6 @@ void turn(Triangle& t) {
 void orient(PreparedMesh& out, EdgeTable& edges, bool trust) {
   TriangleMesh& mesh = out.mesh;
   const auto [shell_of, shell_count] = find_shells(mesh.triangles.size(), edges);
-  const std::vector<bool> none(shell_count, false);
-  const std::vector<Triangle> as_found = mesh.triangles;
 
   Consistency consistency = make_consistent(mesh, edges);
   std::vector<bool> repaired(shell_count, false);
@@ -56,13 +55,12 @@ void orient(PreparedMesh& out, EdgeTable& edges, bool trust) {
                            : any_turned                                        ? Orientation::inverted
                            : any_kept                                          ? Orientation::outward
                                                                                : Orientation::undefined;
-  if (trust) {
-    if (consistency.flips > 0) {
-      mesh.triangles = as_found;
-      edges = build_edge_table(mesh.triangles, mesh.vertices.size());
-    }
+  if (trust) { // put back what was turned, and measure that
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      if (consistency.flip[t]) turn(mesh.triangles[t]);
+    if (consistency.flips > 0) edges = build_edge_table(mesh.triangles, mesh.vertices.size());
     for (const Shell& s :
-         consistency.flips > 0 ? measure_shells(mesh, edges, shell_of, shell_count, none) : shells)
+         consistency.flips > 0 ? measure_shells(mesh, edges, shell_of, shell_count, repaired) : shells)
       out.report.volume += s.volume;
     return;
   }
@@ -77,15 +75,12 @@ void orient(PreparedMesh& out, EdgeTable& edges, bool trust) {
 
 // The boundary chain, and the largest of its connected parts.
 void find_open_edges(PreparedMesh& out, const EdgeTable& edges) {
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto group = edges.of(e);
-    int sum = 0;
-    for (const std::uint32_t h : group) sum += runs_up(out.mesh.triangles, h) ? 1 : -1;
-    if (sum == 0) continue;
-    std::uint32_t from = edge_start(out.mesh.triangles, group[0]),
-                  to = edge_end(out.mesh.triangles, group[0]);
-    if ((from < to) == (sum > 0)) std::swap(from, to); // against the majority
-    for (int i = 0; i < std::abs(sum); ++i) out.open_edges.push_back({from, to});
+  for (const OpenEdge& open : find_boundary_chain(out.mesh.triangles, edges)) {
+    const std::uint32_t h = edges.of(open.edge)[0];
+    const auto [low, high] =
+        std::minmax({edge_start(out.mesh.triangles, h), edge_end(out.mesh.triangles, h)});
+    for (int i = 0; i < std::abs(open.excess); ++i)
+      out.open_edges.push_back(open.excess > 0 ? std::array{high, low} : std::array{low, high});
   }
   out.report.longest_hole = largest_part(out.mesh, out.open_edges);
 }

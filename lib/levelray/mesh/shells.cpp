@@ -15,7 +15,8 @@ namespace {
 // terrain, cloth. Its direction is left as it is.
 constexpr double sheet = 0.01;
 
-constexpr int samples_per_shell = 5;
+// On each shell, to be found inside of another. More would catch smaller parts that stick out.
+constexpr int samples_per_shell = 3;
 
 // No two of a mesh's faces are likely to be parallel to these.
 const Vec3d directions[3] = {{0.5380, 0.3719, 0.7564}, {-0.8171, 0.2113, 0.5364}, {0.1291, -0.9507, -0.2817}};
@@ -86,22 +87,23 @@ std::vector<std::vector<std::uint32_t>> find_containers(const TriangleMesh& mesh
 
   const TriangleBvh bvh(mesh);
   const auto samples = sample_shells(mesh, shell_of, count);
-  const bool any_open = std::any_of(shells.begin(), shells.end(), [](const Shell& s) { return s.open; });
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t s = 0; s < count; ++s)
+    if (shells[s].open) open.push_back(s);
   parallel_for(count, 64, [&](std::size_t begin, std::size_t end) {
     std::vector<std::pair<std::uint32_t, int>> windings;
-    for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s)
+    for (auto s = static_cast<std::uint32_t>(begin); s < end; ++s) {
+      // For closed shells one ray tells exactly; in an open one we are where the mean over directions is
+      // above 1/2.
+      const bool maybe_in_open =
+          open.size() > 64 || std::any_of(open.begin(), open.end(), [&](auto o) { return may_hold(o, s); });
+      const int rays = maybe_in_open ? 3 : 1;
       for (const Vec3d& p : samples[s]) {
         windings.clear();
-        for (const Vec3d& direction : directions) {
-          add_windings(bvh, shell_of, p, direction, windings);
-          // One ray is enough for a point outside of all closed shells.
-          if (!any_open && std::none_of(windings.begin(), windings.end(),
-                                        [&](const auto& w) { return w.second != 0 && may_hold(w.first, s); }))
-            break;
-        }
+        for (int i = 0; i < rays; ++i) add_windings(bvh, shell_of, p, directions[i], windings);
         std::vector<std::uint32_t> inside;
         for (const auto& [outer, sum] : windings)
-          if (2 * std::abs(sum) > 3 && may_hold(outer, s)) inside.push_back(outer); // |mean of three| > 1/2
+          if (2 * std::abs(sum) > rays && may_hold(outer, s)) inside.push_back(outer);
         if (&p == &samples[s].front())
           containers[s] = std::move(inside);
         else
@@ -110,51 +112,86 @@ std::vector<std::vector<std::uint32_t>> find_containers(const TriangleMesh& mesh
           });
         if (containers[s].empty()) break;
       }
+    }
   });
   return containers;
 }
+
+// Calls add(t, sums) for every triangle, with sums[s] the shells' accumulators, and returns their totals.
+// Chunks depend on the mesh alone, so that the totals' bits do not depend on threads.
+template <class Sum, class Add>
+std::vector<Sum> sum_up(std::size_t triangle_count, std::size_t shell_count, Add&& add) {
+  const std::size_t grain = shell_count <= 64 ? 65536 : triangle_count;
+  std::vector<std::vector<Sum>> parts((triangle_count + grain - 1) / grain, std::vector<Sum>(shell_count));
+  parallel_for(triangle_count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) add(t, parts[begin / grain]);
+  });
+  for (std::size_t i = 1; i < parts.size(); ++i)
+    for (std::size_t s = 0; s < shell_count; ++s) parts[0][s] += parts[i][s];
+  return std::move(parts[0]);
+}
+
+struct BoxSum {
+  Box3d box;
+  void operator+=(const BoxSum& other) { box.extendBy(other.box); }
+};
+
+struct VolumeSum {
+  double volume = 0, lost = 0; // compensated (Neumaier 1974, algorithm IV)
+  double magnitude = 0, area = 0;
+  void add(double term) {
+    const double next = volume + term;
+    lost += std::abs(volume) >= std::abs(term) ? (volume - next) + term : (term - next) + volume;
+    volume = next;
+  }
+  void operator+=(const VolumeSum& other) {
+    add(other.volume);
+    lost += other.lost, magnitude += other.magnitude, area += other.area;
+  }
+};
 
 // Signed volumes, each relative to a point of its own: the centroid of the boundary caps open shells, and for
 // closed ones the middle of the box keeps digits far from the origin.
 void measure_volumes(const TriangleMesh& mesh, const EdgeTable& edges,
                      const std::vector<std::uint32_t>& shell_of, std::vector<Shell>& shells) {
-  std::vector<Vec3d> centroid(shells.size(), Vec3d(0));
+  const auto boxes =
+      sum_up<BoxSum>(mesh.triangles.size(), shells.size(), [&](std::size_t t, std::vector<BoxSum>& sums) {
+        for (const std::uint32_t v : mesh.triangles[t]) sums[shell_of[t]].box.extendBy(mesh.vertices[v]);
+      });
+  for (std::size_t s = 0; s < shells.size(); ++s) shells[s].bounds = boxes[s].box;
+
+  std::vector<Vec3d> centroid(shells.size(), Vec3d(0)); // relative to the box's middle
   std::vector<double> weight(shells.size(), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t]) shells[shell_of[t]].bounds.extendBy(mesh.vertices[v]);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto group = edges.of(e);
-    int sum = 0;
-    for (const std::uint32_t h : group) sum += runs_up(mesh.triangles, h) ? 1 : -1;
-    if (sum == 0) continue;
-    const std::uint32_t s = shell_of[group[0] / 3];
-    const Vec3d& a = mesh.vertices[edge_start(mesh.triangles, group[0])];
-    const Vec3d& b = mesh.vertices[edge_end(mesh.triangles, group[0])];
-    const double length = (b - a).length() * std::abs(sum);
+  for (const OpenEdge& open : find_boundary_chain(mesh.triangles, edges)) {
+    const std::uint32_t h = edges.of(open.edge)[0], s = shell_of[h / 3];
     const Vec3d middle = shells[s].bounds.center();
-    centroid[s] += ((a - middle) + (b - middle)) * (0.5 * length);
+    const Vec3d a = mesh.vertices[edge_start(mesh.triangles, h)] - middle;
+    const Vec3d b = mesh.vertices[edge_end(mesh.triangles, h)] - middle;
+    const double length = (b - a).length() * std::abs(open.excess);
+    centroid[s] += (a + b) * (0.5 * length);
     weight[s] += length;
     shells[s].open = true;
   }
   for (std::size_t s = 0; s < shells.size(); ++s)
     centroid[s] = shells[s].bounds.center() + (weight[s] > 0 ? centroid[s] / weight[s] : Vec3d(0));
 
-  std::vector<double> magnitude(shells.size(), 0), area(shells.size(), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint32_t s = shell_of[t];
-    const auto& [ia, ib, ic] = mesh.triangles[t];
-    const Vec3d a = mesh.vertices[ia] - centroid[s], b = mesh.vertices[ib] - centroid[s],
-                c = mesh.vertices[ic] - centroid[s];
-    const Vec3d n = (mesh.vertices[ib] - mesh.vertices[ia]).cross(mesh.vertices[ic] - mesh.vertices[ia]);
-    shells[s].volume += a.dot(n) / 6;
-    magnitude[s] += a.length() * b.length() * c.length() / 6;
-    area[s] += n.length() / 2;
-  }
+  const auto volumes = sum_up<VolumeSum>(
+      mesh.triangles.size(), shells.size(), [&](std::size_t t, std::vector<VolumeSum>& sums) {
+        const std::uint32_t s = shell_of[t];
+        const Vec3d& corner = mesh.vertices[mesh.triangles[t][0]];
+        const Vec3d a = corner - centroid[s];
+        const Vec3d u = mesh.vertices[mesh.triangles[t][1]] - corner,
+                    v = mesh.vertices[mesh.triangles[t][2]] - corner;
+        const Vec3d n = u.cross(v);
+        sums[s].add(a.dot(n) / 6);
+        sums[s].magnitude += std::sqrt(a.length2() * u.length2()) * v.length() / 6;
+        if (shells[s].open) sums[s].area += n.length() / 2;
+      });
   for (std::size_t s = 0; s < shells.size(); ++s) {
-    // a.n carries at most 16 roundings of terms below 4 |a||b||c|.
-    const double rounding = 64 * std::numeric_limits<double>::epsilon() * magnitude[s];
-    const double ball = std::pow(area[s], 1.5) / (6 * std::sqrt(std::numbers::pi));
-    const double volume = shells[s].volume;
+    // Each term a.n carries at most ten roundings of at most |a||u||v|; the compensated sum adds one.
+    const double rounding = 16 * std::numeric_limits<double>::epsilon() * volumes[s].magnitude;
+    const double ball = std::pow(volumes[s].area, 1.5) / (6 * std::sqrt(std::numbers::pi));
+    const double volume = shells[s].volume = volumes[s].volume + volumes[s].lost;
     if (!(std::abs(volume) > rounding) || (shells[s].open && !(std::abs(volume) > sheet * ball))) continue;
     shells[s].sign = volume > 0 ? 1 : -1;
   }
