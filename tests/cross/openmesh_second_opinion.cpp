@@ -8,38 +8,74 @@
 #include <OpenMesh/Core/Mesh/BaseKernel.hh>
 #include <filesystem>
 
-using namespace levelray;
-using namespace levelray::test;
-
 namespace {
 
+using namespace OpenMesh; // for the signatures below
+
 // Collects what OpenMesh's readers deliver, before its half-edge structure could refuse any of it.
-class SoupImporter : public OpenMesh::IO::BaseImporter {
+class SoupImporter : public IO::BaseImporter {
  public:
-  OpenMesh::VertexHandle add_vertex(const OpenMesh::Vec3f& p) override {
+  VertexHandle add_vertex(const OpenMesh::Vec3f& p) override {
     positions.push_back(p);
-    return OpenMesh::VertexHandle(static_cast<int>(positions.size()) - 1);
+    return VertexHandle(static_cast<int>(positions.size()) - 1);
   }
-  OpenMesh::VertexHandle add_vertex() override { return add_vertex(OpenMesh::Vec3f(0, 0, 0)); }
-  void set_point(OpenMesh::VertexHandle vertex, const OpenMesh::Vec3f& p) override {
+  VertexHandle add_vertex() override { return add_vertex(OpenMesh::Vec3f(0, 0, 0)); }
+  void set_point(VertexHandle vertex, const OpenMesh::Vec3f& p) override {
     positions[static_cast<std::size_t>(vertex.idx())] = p;
   }
-  OpenMesh::HalfedgeHandle add_edge(OpenMesh::VertexHandle, OpenMesh::VertexHandle) override { return {}; }
-  OpenMesh::FaceHandle add_face(const VHandles& corners) override {
+  FaceHandle add_face(const VHandles& corners) override {
     triangles += corners.size() < 3 ? 0 : corners.size() - 2;
-    return OpenMesh::FaceHandle(static_cast<int>(faces++));
+    return FaceHandle(static_cast<int>(faces++));
   }
-  OpenMesh::FaceHandle add_face(OpenMesh::HalfedgeHandle) override { return {}; }
-  OpenMesh::BaseKernel* kernel() override { return nullptr; }
   size_t n_vertices() const override { return positions.size(); }
   size_t n_faces() const override { return faces; }
   size_t n_edges() const override { return 0; }
 
   std::vector<OpenMesh::Vec3f> positions;
   std::size_t faces = 0, triangles = 0;
+
+  // Everything else a reader may deliver is let go.
+  HalfedgeHandle add_edge(VertexHandle, VertexHandle) override { return HalfedgeHandle(); }
+  FaceHandle add_face(HalfedgeHandle) override { return FaceHandle(); }
+  void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<Vec2f>&) override {}
+  void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<OpenMesh::Vec3f>&) override {}
+  void set_face_texindex(FaceHandle, int) override {}
+  void set_halfedge(VertexHandle, HalfedgeHandle) override {}
+  void set_normal(VertexHandle, const OpenMesh::Vec3f&) override {}
+  void set_normal(VertexHandle, const OpenMesh::Vec3d&) override {}
+  void set_color(VertexHandle, const Vec3uc&) override {}
+  void set_color(VertexHandle, const Vec4uc&) override {}
+  void set_color(VertexHandle, const OpenMesh::Vec3f&) override {}
+  void set_color(VertexHandle, const Vec4f&) override {}
+  void set_texcoord(VertexHandle, const Vec2f&) override {}
+  void set_status(VertexHandle, const Attributes::StatusInfo&) override {}
+  void set_next(HalfedgeHandle, HalfedgeHandle) override {}
+  void set_face(HalfedgeHandle, FaceHandle) override {}
+  void request_face_texcoords2D() override {}
+  void set_texcoord(HalfedgeHandle, const Vec2f&) override {}
+  void set_texcoord(VertexHandle, const OpenMesh::Vec3f&) override {}
+  void set_texcoord(HalfedgeHandle, const OpenMesh::Vec3f&) override {}
+  void set_status(HalfedgeHandle, const Attributes::StatusInfo&) override {}
+  void set_color(EdgeHandle, const Vec3uc&) override {}
+  void set_color(EdgeHandle, const Vec4uc&) override {}
+  void set_color(EdgeHandle, const OpenMesh::Vec3f&) override {}
+  void set_color(EdgeHandle, const Vec4f&) override {}
+  void set_status(EdgeHandle, const Attributes::StatusInfo&) override {}
+  void set_normal(FaceHandle, const OpenMesh::Vec3f&) override {}
+  void set_normal(FaceHandle, const OpenMesh::Vec3d&) override {}
+  void set_color(FaceHandle, const Vec3uc&) override {}
+  void set_color(FaceHandle, const Vec4uc&) override {}
+  void set_color(FaceHandle, const OpenMesh::Vec3f&) override {}
+  void set_color(FaceHandle, const Vec4f&) override {}
+  void set_status(FaceHandle, const Attributes::StatusInfo&) override {}
+  void add_texture_information(int, std::string) override {}
 };
 
 } // namespace
+
+using namespace levelray::test;
+using levelray::MeshFile;
+using levelray::read_mesh;
 
 TEST_CASE("OpenMesh's readers and ours find the same vertices and faces in valid files") {
   const std::filesystem::path testdata = LEVELRAY_TESTDATA;
