@@ -7,15 +7,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace levelray::test {
 
 // Samples `field` (any callable double(Vec3d), world units, negative inside) at every sample origin +
 // voxel_size * (i,j,k) in `box` (world space); samples beyond the box are outside. Values are
-// rounded to float and clamped to +-background, background = half_width_voxels * voxel_size; a sample is
-// active iff |value| < background. A block is stored iff it has an active sample, or a cell whose corners are
-// not all strictly of one sign (what tracing relies on).
+// rounded to float and clamped to +-background, background = half_width_voxels * voxel_size rounded up; a
+// sample is active iff |value| < background. A block is stored iff it has an active sample, or a cell whose
+// corners are not all strictly of one sign (what tracing relies on).
 template <class Field>
 BlockGrid sample_grid(const Field& field, double voxel_size, double half_width_voxels, const Box3d& box,
                       const Vec3d& origin = Vec3d(0, 0, 0)) {
@@ -23,6 +24,9 @@ BlockGrid sample_grid(const Field& field, double voxel_size, double half_width_v
   grid.transform.origin = origin;
   grid.transform.voxel_size = voxel_size;
   grid.background = static_cast<float>(half_width_voxels * voxel_size);
+  if (grid.background <
+      half_width_voxels * voxel_size) // never less than the half-width, as OpenVDB's checks want it
+    grid.background = std::nextafter(grid.background, std::numeric_limits<float>::infinity());
 
   // Cover the samples of the box and one more on each side by nodes.
   Vec3i low, high; // first and last sample in the box

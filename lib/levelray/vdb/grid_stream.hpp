@@ -25,7 +25,7 @@ void send_file(const ByteSink& write, const VdbFile& file, bool with_grid);
 // The other end. Every count is checked before memory is taken for it: the grid and the texts stay within
 // `max_bytes`. The grid is sound when this returns: indices within +-2^31/16 nodes, every table entry a node
 // or a tile, values finite and not -0, inactive ones +-background. `cells` is empty. Throws the Error that
-// was sent, or Error(failed) naming `path` when the bytes make no sense.
+// was sent, or Error(bad_input) naming `path` when the bytes make no sense.
 VdbFile receive_file(const ByteSource& read, const std::string& path, std::uint64_t max_bytes,
                      bool with_grid);
 

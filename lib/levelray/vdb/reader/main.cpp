@@ -67,6 +67,17 @@ void write_all(const void* bytes, std::size_t count) {
   }
 }
 
+// What is said when memory runs out, made while there is some. Out of memory, OpenVDB's destructors throw and
+// end the program, so the answer is sent where the allocation fails.
+std::string g_out_of_memory;
+bool g_sending = false;
+
+void out_of_memory() {
+  if (g_sending) ::_exit(1);
+  write_all(g_out_of_memory.data(), g_out_of_memory.size());
+  ::_exit(0);
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -79,11 +90,18 @@ int main(int argc, char** argv) {
   VdbReadOptions options;
   options.grid = argv[3];
   options.max_memory = std::strtoull(argv[4], nullptr, 10);
+  send_error([](const void* bytes,
+                std::size_t count) { g_out_of_memory.append(static_cast<const char*>(bytes), count); },
+             ErrorKind::limit,
+             path + ": reading needs more memory than the " + std::to_string(options.max_memory >> 20) +
+                 " MiB allowed");
+  std::set_new_handler(out_of_memory);
   const ThreadLimit one_thread(1); // threads' stacks and heaps would count against the address space
   limit_myself(options.max_memory, std::strtod(argv[5], nullptr));
 
   std::string buffer; // small pieces go out together
   const auto flush = [&] {
+    g_sending = true;
     write_all(buffer.data(), buffer.size());
     buffer.clear();
   };
@@ -103,10 +121,8 @@ int main(int argc, char** argv) {
     send_file(sink, file, !list_only);
   } catch (const Error& error) {
     send_error(sink, error.kind(), error.what());
-  } catch (const std::bad_alloc&) {
-    send_error(sink, ErrorKind::limit,
-               path + ": reading needs more memory than the " + std::to_string(options.max_memory >> 20) +
-                   " MiB allowed");
+  } catch (const std::bad_alloc&) { // of allocators that do not ask out_of_memory
+    out_of_memory();
   } catch (const std::exception& error) {
     send_error(sink, ErrorKind::bad_input, path + ": " + printable(error.what(), 160));
   }
