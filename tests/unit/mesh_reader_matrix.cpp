@@ -1,6 +1,6 @@
 // The bad inputs that users really hand over, row by row: each gives the right mesh or one line that says
 // what is wrong, where, and what to do. (Rows 23 and 25, which load, are in mesh_reader_ply and
-// mesh_reader_off too.)
+// mesh_reader_off too.) Above 400 lines because it is one list, a test per row.
 #include "support/mesh_texts.hpp"
 
 #include <filesystem>
