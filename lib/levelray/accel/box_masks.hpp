@@ -24,14 +24,6 @@ inline std::uint64_t mirror_mask(std::uint64_t mask, int octant) {
   return mask;
 }
 
-// The bits set in `mask`; kept free of library calls, which a build for any x86-64 would make.
-inline std::uint64_t count_bits(std::uint64_t mask) {
-  mask -= mask >> 1 & 0x5555555555555555ull;
-  mask = (mask & 0x3333333333333333ull) + (mask >> 2 & 0x3333333333333333ull);
-  mask = (mask + (mask >> 4)) & 0x0F0F0F0F0F0F0F0Full;
-  return mask * 0x0101010101010101ull >> 56;
-}
-
 // Children whose coordinate along an axis lies in low..high, by [axis][low][high].
 inline constexpr auto layer_masks = [] {
   std::array<std::array<std::array<std::uint64_t, 4>, 4>, 3> masks{};

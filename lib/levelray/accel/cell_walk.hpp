@@ -21,6 +21,7 @@
 
 #include "levelray/accel/box_masks.hpp"
 #include "levelray/accel/ray_frame.hpp"
+#include "levelray/core/bits.hpp"
 #include "levelray/grid/cell_segment.hpp"
 
 #include <bit>
@@ -41,11 +42,13 @@ namespace walk {
 
 // s of the five planes that bound and divide a 4x4x4 box, per axis.
 struct PlaneTimes {
-  double s[3][5];
+  double s[3][6]; // the sixth only evens out the loop
 
   PlaneTimes(const RayFrame& ray, const int (&corner)[3], int child_size) {
-    for (int a = 0; a < 3; ++a)
-      for (int k = 0; k < 5; ++k) s[a][k] = (corner[a] + k * child_size - ray.origin[a]) * ray.inverse[a];
+    for (int a = 0; a < 3; ++a) {
+      const double first = corner[a], size = child_size;
+      for (int k = 0; k < 6; ++k) s[a][k] = (first + k * size - ray.origin[a]) * ray.inverse[a];
+    }
   }
   double in(int x, int y, int z, double start) const {
     return std::max(std::max(s[0][x], s[1][y]), std::max(s[2][z], start));
@@ -55,17 +58,18 @@ struct PlaneTimes {
   }
 };
 
-// A superset of the children of the box at `corner` that the ray meets in [in, out]: those between the
-// children of the ends. The margin of 2^-20 children covers the rounding of the points against that of the
-// plane times, which is below 2^-28 voxel in a box of 2^22 voxels.
+// A superset of the children of the box at `corner` that the ray meets in [in, out], an interval in which it
+// is in the box: those between the children of the ends. The margin of 2^-20 children covers the rounding of
+// the points against that of the plane times, which is below 2^-28 voxel in a box of 2^22 voxels.
 inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3], double per_child, double in,
                                 double out) {
   std::uint64_t mask = ~std::uint64_t{0};
   for (int a = 0; a < 3; ++a) {
     const double first = (ray.origin[a] + in * ray.direction[a] - corner[a]) * per_child - 0x1p-20;
     const double last = (ray.origin[a] + out * ray.direction[a] - corner[a]) * per_child + 0x1p-20;
-    const int low = static_cast<int>(std::min(std::max(first, 0.0), 3.0));
-    const int high = static_cast<int>(std::min(std::max(last, 0.0), 3.0));
+    // Truncation takes what is barely below 0 to 0; clamp as integers, which needs no branch.
+    const int low = std::clamp(static_cast<int>(first), 0, 3),
+              high = std::clamp(static_cast<int>(last), 0, 3);
     mask &= layer_masks[static_cast<std::size_t>(a)][static_cast<std::size_t>(low)]
                        [static_cast<std::size_t>(high)];
   }
@@ -76,13 +80,14 @@ inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3], dou
 inline void set_ends(const RayFrame& ray, const PlaneTimes& times, const int (&digit)[3], VisitedCell& cell) {
   for (int a = 0; a < 3; ++a) {
     const double low = cell.position[a], high = low + 1;
-    const double in = ray.origin[a] + cell.in * ray.direction[a];
-    const double out = ray.origin[a] + cell.out * ray.direction[a];
-    const bool on_low = times.s[a][digit[a]] >= cell.in, on_high = times.s[a][digit[a] + 1] <= cell.out;
-    cell.segment.in.x[a] = on_low ? 0 : std::min(std::max(in - low, 0.0), 1.0);
-    cell.segment.in.rest[a] = on_low ? 1 : std::min(std::max(high - in, 0.0), 1.0);
-    cell.segment.out.x[a] = on_high ? 1 : std::min(std::max(out - low, 0.0), 1.0);
-    cell.segment.out.rest[a] = on_high ? 0 : std::min(std::max(high - out, 0.0), 1.0);
+    // cell.in is the largest of the lower planes' times and 0, cell.out likewise.
+    const double in = times.s[a][digit[a]] == cell.in ? low : ray.origin[a] + cell.in * ray.direction[a];
+    const double out =
+        times.s[a][digit[a] + 1] == cell.out ? high : ray.origin[a] + cell.out * ray.direction[a];
+    cell.segment.in.x[a] = std::min(std::max(in - low, 0.0), 1.0);
+    cell.segment.in.rest[a] = std::min(std::max(high - in, 0.0), 1.0);
+    cell.segment.out.x[a] = std::min(std::max(out - low, 0.0), 1.0);
+    cell.segment.out.rest[a] = std::min(std::max(high - out, 0.0), 1.0);
   }
 }
 
@@ -115,8 +120,9 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
     std::uint64_t rest =
         mirror_mask(surface.cells(block), ray.octant) & walk::chord_mask(ray, corner, 1, in, out);
     if (!rest) return false;
-    const walk::PlaneTimes times(ray, corner, 1);
     const float* const record = surface.record(block);
+    for (int line = 0; line < 8; ++line) __builtin_prefetch(record + 16 * line);
+    const walk::PlaneTimes times(ray, corner, 1);
     for (; rest; rest &= rest - 1) {
       const int bit = std::countr_zero(rest);
       const int digit[3] = {bit_x(bit), bit_y(bit), bit_z(bit)};
@@ -167,8 +173,9 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
     // Find where the ray leaves the node, or the empty cube that begins with it.
     double leave[3];
     for (int a = 0; a < 3; ++a) leave[a] = ((at[a] + length) * node_dim - ray.origin[a]) * ray.inverse[a];
-    const int axis = leave[0] <= leave[1] ? (leave[0] <= leave[2] ? 0 : 2) : (leave[1] <= leave[2] ? 1 : 2);
-    const double next = std::max(s, leave[axis]);
+    const bool by_x = (leave[0] <= leave[1]) & (leave[0] <= leave[2]);
+    const bool by_y = !by_x & (leave[1] <= leave[2]);
+    const double next = std::max(s, std::min(leave[0], std::min(leave[1], leave[2])));
 
     if (!leap) {
       const int corner[3] = {at[0] * node_dim, at[1] * node_dim, at[2] * node_dim};
@@ -179,16 +186,17 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
     if (!(next < ray.end)) return false;
 
     // Move on: the crossed axis by integers, the others to where the ray is.
-    for (int a = 0; a < 3; ++a) {
-      if (a == axis) {
-        at[a] += length;
-        if (at[a] >= dims[a]) return false;
-      } else if (length > 1) {
-        const double p = (ray.origin[a] + next * ray.direction[a]) * (1.0 / node_dim);
+    const int crossed[3] = {by_x, by_y, !by_x & !by_y};
+    if (length > 1)
+      for (int a = 0; a < 3; ++a) {
+        const int p = static_cast<int>((ray.origin[a] + next * ray.direction[a]) * (1.0 / node_dim));
         // Rounding may put the point on the far side of the cube, or of the table.
-        at[a] = std::min(static_cast<int>(std::max(p, double(at[a]))), std::min(at[a] + length, dims[a]) - 1);
+        const int inside = std::min(std::max(p, at[a]), std::min(at[a] + length, dims[a]) - 1);
+        at[a] = crossed[a] ? at[a] + length : inside;
       }
-    }
+    else
+      for (int a = 0; a < 3; ++a) at[a] += crossed[a];
+    if ((at[0] >= dims[0]) | (at[1] >= dims[1]) | (at[2] >= dims[2])) return false;
     s = next;
   }
 }

@@ -20,20 +20,19 @@ double reciprocal_power(double x) {
 
 } // namespace
 
-std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransform& transform,
-                                  const WorldRay& ray) {
-  if (surface.empty() || !(ray.t_min <= ray.t_max)) return std::nullopt;
+bool enter_box(const SurfaceBlocks& surface, const GridTransform& transform, const WorldRay& ray,
+               RayFrame& frame) {
+  if (surface.empty() || !(ray.t_min <= ray.t_max)) return false;
   const double per_voxel = 1 / transform.voxel_size;
 
   // Scale the direction, so that neither tiny nor huge ones over- or underflow below.
   const double scaled[3] = {ray.direction.x * per_voxel, ray.direction.y * per_voxel,
                             ray.direction.z * per_voxel};
   const double largest = std::max({std::fabs(scaled[0]), std::fabs(scaled[1]), std::fabs(scaled[2])});
-  if (!(largest > 0 && largest <= std::numeric_limits<double>::max())) return std::nullopt;
+  if (!(largest > 0 && largest <= std::numeric_limits<double>::max())) return false;
   const double scale = reciprocal_power(largest);
 
   // Mirror, clip to the slabs.
-  RayFrame frame;
   frame.octant = 0;
   frame.t_per_s = scale;
   double enter = -std::numeric_limits<double>::infinity(), leave = std::numeric_limits<double>::infinity();
@@ -50,7 +49,7 @@ std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransf
     frame.inverse[a] = 1 / std::max(frame.direction[a], 0x1p-100);
     const double slab_in = (0 - frame.origin[a]) * frame.inverse[a];
     const double slab_out = (high[a] - frame.origin[a]) * frame.inverse[a];
-    if (!(slab_in <= slab_out)) return std::nullopt; // NaN or infinite origin, or NaN direction
+    if (!(slab_in <= slab_out)) return false; // NaN or infinite origin, or NaN direction
     if (slab_in > enter) {
       enter = slab_in;
       enter_axis = a;
@@ -59,11 +58,12 @@ std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransf
   }
 
   // The interval in the scaled parameter, whose unit is t_per_s of the ray's own.
-  const double first = ray.t_min / scale, last = ray.t_max / scale;
+  const double per_t = 1 / scale; // exact, as scale is a power of two
+  const double first = ray.t_min * per_t, last = ray.t_max * per_t;
   frame.from_outside = enter > first;
   const double start = frame.from_outside ? enter : first;
   const double stop = std::min(leave, last);
-  if (!(start <= stop)) return std::nullopt;
+  if (!(start <= stop)) return false;
   frame.end = stop - start;
   frame.t_at_start = frame.from_outside ? start * scale : ray.t_min;
 
@@ -71,10 +71,11 @@ std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransf
   for (int a = 0; a < 3; ++a) {
     frame.origin[a] += start * frame.direction[a];
     if (frame.from_outside && a == enter_axis) frame.origin[a] = 0;
+    // The origin lies in the box but for rounding, so truncation is the floor once it is clamped.
     frame.start_node[a] =
-        static_cast<int>(std::clamp(std::floor(frame.origin[a] / node_dim), 0.0, high[a] / node_dim - 1));
+        static_cast<int>(std::min(std::max(frame.origin[a], 0.0), high[a] - 0.5)) / node_dim;
   }
-  return frame;
+  return true;
 }
 
 } // namespace levelray

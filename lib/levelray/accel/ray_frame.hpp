@@ -9,8 +9,6 @@
 #include "levelray/accel/surface_blocks.hpp"
 #include "levelray/core/ray.hpp"
 
-#include <optional>
-
 namespace levelray {
 
 struct RayFrame {
@@ -29,11 +27,11 @@ struct RayFrame {
   double t(double s) const { return t_at_start + s * t_per_s; }
 };
 
-// Nothing where the ray does not meet the box in [t_min, t_max], has no direction, or holds a NaN.
+// Returns false where the ray does not meet the box in [t_min, t_max], has no direction, or holds a NaN.
 //
 // Everything is computed in double. Moving the origin to the box costs half an ulp of |origin| and of the
 // distance travelled: 1e-13 voxel for a camera 1000 voxels away, 1e-4 voxel for one 10^12 voxels away.
-std::optional<RayFrame> enter_box(const SurfaceBlocks& surface, const GridTransform& transform,
-                                  const WorldRay& ray);
+bool enter_box(const SurfaceBlocks& surface, const GridTransform& transform, const WorldRay& ray,
+               RayFrame& frame);
 
 } // namespace levelray

@@ -5,6 +5,7 @@
 // what tracing needs is built from it (trace/level_set.hpp).
 #pragma once
 
+#include "levelray/core/bits.hpp"
 #include "levelray/core/uninitialized_vector.hpp"
 #include "levelray/grid/coords.hpp"
 
@@ -70,7 +71,7 @@ class BlockGrid {
   // The index of block `bit` of a node whose mask has it.
   static std::size_t block_index(const Node& node, int bit) {
     return node.first_block +
-           static_cast<std::size_t>(std::popcount(node.stored & ((std::uint64_t{1} << bit) - 1)));
+           static_cast<std::size_t>(count_bits(node.stored & ((std::uint64_t{1} << bit) - 1)));
   }
 
   // The 64 samples of the stored block that holds sample (i,j,k), or null; then *inside tells the side when

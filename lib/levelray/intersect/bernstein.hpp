@@ -6,45 +6,56 @@
 // (the cubic itself: Parker et al. 1998; its power basis loses six times as many digits). b0 and b3 are the
 // interpolant at the ends, computed just as `interpolate` does, so that neighbours agree on shared faces. The
 // cubic lies in the convex hull of b0..b3: four coefficients of one sign are a proof that there is no root.
+// We keep 3 b1 and 3 b2, which saves a rounding: the cubic of corners that are small integers is exact.
 //
 // Rounding, with u = 2^-53 or 2^-24 and M the largest |corner|: a weight is rounded once, its product and the
-// sum once each, so a level of interpolation adds at most 3u M, three levels 9u M; the mean of three adds at
-// most 4u M. Together 13u M (1 + O(u)) < 16u M. Products that underflow in float lose at most 2^-149 each
-// (2^-126 where a host flushes denormals): 2^-120 covers them. CellSegment::error holds 2^-20 M + 2^-120.
+// sum once each, so a level of interpolation adds at most 3u M and three levels 9u M. A sum of three values
+// adds 2u 3M to three times that: 33u M. So b0 and b3 are off by less than 16u M, and 3 b1 and 3 b2 by less
+// than three times as much. Products that underflow in float lose at most 2^-149 each (2^-126 where a host
+// flushes denormals): 2^-120 covers them. CellSegment::error holds 2^-20 M + 2^-120.
 #pragma once
 
 #include "levelray/grid/cell_segment.hpp"
 
 namespace levelray {
 
+// f(s) = start (1-s)^3 + sum1 (1-s)^2 s + sum2 (1-s) s^2 + end s^3.
 template <class T>
 struct Bernstein {
-  T b[4];
+  T start, sum1, sum2, end;
 };
 
+// Written in lanes of four, one for each choice of ends in x and y, which compilers turn into vectors; the
+// operations on each value are those of `interpolate`.
 template <class T>
 inline Bernstein<T> bernstein_along(const CellSegment& segment) {
-  T x[2], x_rest[2], y[2], y_rest[2], z[2], z_rest[2];
-  for (int e = 0; e < 2; ++e) {
-    const CellPoint& p = e ? segment.out : segment.in;
-    x[e] = static_cast<T>(p.x[0]), x_rest[e] = static_cast<T>(p.rest[0]);
-    y[e] = static_cast<T>(p.x[1]), y_rest[e] = static_cast<T>(p.rest[1]);
-    z[e] = static_cast<T>(p.x[2]), z_rest[e] = static_cast<T>(p.rest[2]);
-  }
-  T f[8]; // x + 2y + 4z, digits choosing the end
-  for (int a = 0; a < 2; ++a) {
-    T along_x[4];
-    for (int i = 0; i < 4; ++i)
-      along_x[i] = lerp_exact_ends(static_cast<T>(segment.corner[2 * i]),
-                                   static_cast<T>(segment.corner[2 * i + 1]), x_rest[a], x[a]);
-    for (int b = 0; b < 2; ++b) {
-      const T low = lerp_exact_ends(along_x[0], along_x[1], y_rest[b], y[b]);
-      const T high = lerp_exact_ends(along_x[2], along_x[3], y_rest[b], y[b]);
-      for (int c = 0; c < 2; ++c) f[a + 2 * b + 4 * c] = lerp_exact_ends(low, high, z_rest[c], z[c]);
+  struct Lanes {
+    T v[4];
+  };
+  const auto x_lanes = [](double in, double out) { return Lanes{T(in), T(out), T(in), T(out)}; };
+  const auto y_lanes = [](double in, double out) { return Lanes{T(in), T(in), T(out), T(out)}; };
+  const Lanes x = x_lanes(segment.in.x[0], segment.out.x[0]),
+              x_rest = x_lanes(segment.in.rest[0], segment.out.rest[0]);
+  const Lanes y = y_lanes(segment.in.x[1], segment.out.x[1]),
+              y_rest = y_lanes(segment.in.rest[1], segment.out.rest[1]);
+
+  Lanes along_y[2]; // at z = 0 and 1
+  for (int k = 0; k < 2; ++k) {
+    const T c00 = T(segment.corner[4 * k]), c10 = T(segment.corner[4 * k + 1]);
+    const T c01 = T(segment.corner[4 * k + 2]), c11 = T(segment.corner[4 * k + 3]);
+    for (int l = 0; l < 4; ++l) {
+      const T low = lerp_exact_ends(c00, c10, x_rest.v[l], x.v[l]);
+      const T high = lerp_exact_ends(c01, c11, x_rest.v[l], x.v[l]);
+      along_y[k].v[l] = lerp_exact_ends(low, high, y_rest.v[l], y.v[l]);
     }
   }
-  const T third = T(1) / T(3);
-  return {{f[0], (f[1] + f[2] + f[4]) * third, (f[3] + f[5] + f[6]) * third, f[7]}};
+  Lanes f0, f1; // at the start and the end in z
+  const T z0 = T(segment.in.x[2]), z0_rest = T(segment.in.rest[2]);
+  const T z1 = T(segment.out.x[2]), z1_rest = T(segment.out.rest[2]);
+  for (int l = 0; l < 4; ++l) f0.v[l] = lerp_exact_ends(along_y[0].v[l], along_y[1].v[l], z0_rest, z0);
+  for (int l = 0; l < 4; ++l) f1.v[l] = lerp_exact_ends(along_y[0].v[l], along_y[1].v[l], z1_rest, z1);
+
+  return {f0.v[0], f0.v[1] + f0.v[2] + f1.v[0], f0.v[3] + f1.v[1] + f1.v[2], f1.v[3]};
 }
 
 } // namespace levelray

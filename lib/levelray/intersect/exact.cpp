@@ -11,25 +11,23 @@ struct Cubic {
   double c0, c1, c2, c3;
 
   explicit Cubic(const Bernstein<double>& f)
-      : c0(f.b[0]), c1(3 * (f.b[1] - f.b[0])), c2(3 * ((f.b[2] - f.b[1]) - (f.b[1] - f.b[0]))),
-        c3((f.b[3] - f.b[0]) - 3 * (f.b[2] - f.b[1])) {}
+      : c0(f.start), c1(f.sum1 - 3 * f.start), c2((f.sum2 - f.sum1) - c1),
+        c3((f.end - f.start) - (f.sum2 - f.sum1)) {}
   double operator()(double s) const { return ((c3 * s + c2) * s + c1) * s + c0; }
   double slope(double s) const { return (3 * c3 * s + 2 * c2) * s + c1; }
 };
 
-// By de Casteljau's scheme: convex combinations only, so the rounding is that of the coefficients.
+// In the Bernstein basis, whose terms do not cancel beyond the hull of the coefficients.
 double evaluate(const Bernstein<double>& f, double s) {
   const double r = 1 - s;
-  const double p0 = f.b[0] * r + f.b[1] * s, p1 = f.b[1] * r + f.b[2] * s, p2 = f.b[2] * r + f.b[3] * s;
-  const double q0 = p0 * r + p1 * s, q1 = p1 * r + p2 * s;
-  return q0 * r + q1 * s;
+  return (f.start * r + f.sum1 * s) * (r * r) + (f.sum2 * r + f.end * s) * (s * s);
 }
 
 // Where the cubic has its local minimum, if that is in (0,1); else -1. With the derivative's Bernstein
-// coefficients d0, d1, d2 (a third of them) it is A s^2 + 2 B s + C, A = d0 - 2 d1 + d2, B = d1 - d0, C = d0,
+// coefficients d0, d1, d2 it is A s^2 + 2 B s + C, A = d0 - 2 d1 + d2, B = d1 - d0, C = d0,
 // and grows at (-B + sqrt(B^2 - A C)) / A.
 double local_minimum(const Bernstein<double>& f) {
-  const double d0 = f.b[1] - f.b[0], d1 = f.b[2] - f.b[1], d2 = f.b[3] - f.b[2];
+  const double d0 = f.sum1 - 3 * f.start, d1 = f.sum2 - f.sum1, d2 = 3 * f.end - f.sum2;
   const double discriminant = d1 * d1 - d0 * d2; // B^2 - A C, where most terms cancel exactly
   if (!(discriminant >= 0)) return -1;
   const double root = std::sqrt(discriminant), half = d1 - d0;
@@ -40,12 +38,11 @@ double local_minimum(const Bernstein<double>& f) {
 } // namespace
 
 double Exact::last_of_bracket(const Bernstein<double>& f) {
-  const auto& b = f.b;
-  if (!(b[0] > 0)) return 0;
-  const bool ends = b[3] <= 0;
+  if (!(f.start > 0)) return 0;
+  const bool ends = f.end <= 0;
   // One change of sign: one root. A minimum can only matter where the middle coefficients dip and come back.
-  if (ends && (b[1] > 0 || b[2] <= 0)) return 1;
-  if (!ends && b[1] > 0 && b[2] > 0) return -1;
+  if (ends && (f.sum1 > 0 || f.sum2 <= 0)) return 1;
+  if (!ends && f.sum1 > 0 && f.sum2 > 0) return -1;
   const double minimum = local_minimum(f);
   if (minimum > 0 && evaluate(f, minimum) <= 0) return minimum;
   return ends ? 1 : -1;
@@ -60,27 +57,35 @@ void Exact::polish(const Bernstein<double>& f, double last, CellRoot& root) {
   const Cubic cubic(f);
   double low = 0, high = last; // f(low) > 0 >= f(high)
   const double f_high = cubic(high);
-  double s = f_high < 0 ? high * (f.b[0] / (f.b[0] - f_high)) : 0.5 * high;
-  // 2^-40 of a cell's chord is below 10^-12 voxel. 64 steps are more than bisection alone would need.
-  for (int step = 0; step < 64; ++step) {
-    const double value = cubic(s);
+  // A minimum that just touches 0 is the root, and so is the end if f comes down to it; else f(1) = 0 is the
+  // end of a stretch below 0 whose beginning is looked for.
+  if (f_high == 0 && (last < 1 || cubic.slope(1) < 0)) low = high;
+  double s = f_high < 0 ? high * (f.start / (f.start - f_high)) : 0.5 * (low + high);
+  // 2^-40 of a cell's chord is below 10^-12 voxel. A Newton step of length m leaves an error of m^2 |f''| / 2
+  // |f'| at the most, so there is no need to wait for a step that short. 64 steps are more than bisection
+  // alone would take.
+  const double curvature = std::fabs(cubic.c2) + 3 * std::fabs(cubic.c3); // >= |f''| / 2 on [0,1]
+  for (int step = 0; step < 64 && low < high; ++step) {
+    const double value = cubic(s), slope = cubic.slope(s);
+    if (value == 0) break;
     if (value > 0)
       low = s;
     else
       high = s;
-    double next = s - value / cubic.slope(s);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    const double moved = std::fabs(next - s);
+    double next = s - value / slope;
+    const double moved = next - s;
+    const bool newton = next > low && next < high;
+    if (!newton) next = 0.5 * (low + high);
     s = next;
-    if (moved <= 0x1p-40 || high - low <= 0x1p-40) break;
+    if ((newton && moved * moved * curvature <= 0x1p-41 * std::fabs(slope)) || high - low <= 0x1p-40) break;
   }
   root.at = s;
 
   // A start for secondary rays. They compute their point anew, from world coordinates, with an error of some
   // 2^-53 of the grid's size in voxels, so f must exceed that: 2^-36 of the largest coefficient serves grids
   // of 2^14 voxels and more.
-  const double margin =
-      0x1p-36 * std::max({std::fabs(f.b[0]), std::fabs(f.b[1]), std::fabs(f.b[2]), std::fabs(f.b[3])});
+  const double margin = 0x1p-36 * std::max({f.start, std::fabs(f.sum1), std::fabs(f.sum2),
+                                            std::fabs(f.end)}); // 3 of the largest b
   for (const double back : {0x1p-20, 0x1p-10, 1.0}) {
     const double before = std::max(0.0, s - back);
     if (cubic(before) > margin) {

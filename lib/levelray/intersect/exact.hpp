@@ -49,13 +49,12 @@ struct Exact {
   static bool surely_positive(const CellSegment& segment, double side) {
     const Bernstein<float> f = bernstein_along<float>(segment);
     const float sign = static_cast<float>(side), error = segment.error;
-    return (f.b[0] * sign > error) & (f.b[1] * sign > error) & (f.b[2] * sign > error) &
-           (f.b[3] * sign > error);
+    return (f.start * sign > error) & (f.sum1 * sign > 3 * error) & (f.sum2 * sign > 3 * error) &
+           (f.end * sign > error);
   }
   static Bernstein<double> oriented(const CellSegment& segment, double side) {
-    Bernstein<double> f = bernstein_along<double>(segment);
-    for (double& b : f.b) b *= side;
-    return f;
+    const Bernstein<double> f = bernstein_along<double>(segment);
+    return {f.start * side, f.sum1 * side, f.sum2 * side, f.end * side};
   }
   static void polish(const Bernstein<double>& f, double last, CellRoot& root);
 };

@@ -26,7 +26,7 @@ double interpolate(const Neighbourhood& f, const double (&p)[3]) {
 } // namespace
 
 Vec3d DifferenceOfInterpolations::gradient(const BlockGrid& grid, const CellPosition& at) {
-  const Neighbourhood f = fetch_neighbourhood(grid, at.cell);
+  const Neighbourhood f(grid, at.cell);
   Vec3d gradient;
   for (int a = 0; a < 3; ++a) {
     double below[3] = {at.local[0], at.local[1], at.local[2]},

@@ -2,33 +2,39 @@
 
 namespace levelray {
 
-Neighbourhood fetch_neighbourhood(const BlockGrid& grid, const Vec3i& cell) {
-  Neighbourhood result;
+namespace {
 
-  // Along each axis the samples cell-1 .. cell+2 are one run in one block, or two runs in two.
-  int first[3], split[3]; // first sample; length of the first run
+// Blocks of a constant value, for where none is stored: rare so near the surface, and one per thread and
+// side is enough, as a Neighbourhood is used up before the next is made.
+const float* constant_block(bool inside, float background) {
+  thread_local float blocks[2][samples_per_block];
+  float(&block)[samples_per_block] = blocks[inside];
+  for (float& value : block) value = inside ? -background : background;
+  return block;
+}
+
+} // namespace
+
+Neighbourhood::Neighbourhood(const BlockGrid& grid, const Vec3i& cell) {
+  Vec3i first = cell - Vec3i(1, 1, 1), second = first;
+  unsigned crossed = 0;
   for (int a = 0; a < 3; ++a) {
-    first[a] = cell[a] - 1;
-    split[a] = block_dim - (first[a] & (block_dim - 1));
-  }
-  for (int z = 0, z_end; z < 4; z = z_end) {
-    z_end = z == 0 ? split[2] : 4;
-    for (int y = 0, y_end; y < 4; y = y_end) {
-      y_end = y == 0 ? split[1] : 4;
-      for (int x = 0, x_end; x < 4; x = x_end) {
-        x_end = x == 0 ? split[0] : 4;
-        bool inside = false;
-        const float* const block = grid.find_block(first[0] + x, first[1] + y, first[2] + z, &inside);
-        const float constant = inside ? -grid.background : grid.background;
-        for (int k = z; k < z_end; ++k)
-          for (int j = y; j < y_end; ++j)
-            for (int i = x; i < x_end; ++i)
-              result.values[i + 4 * j + 16 * k] =
-                  block ? block[bit_in_block(first[0] + i, first[1] + j, first[2] + k)] : constant;
-      }
+    for (int i = 0; i < 4; ++i) {
+      const int sample = first[a] + i;
+      const bool next = sample >> 2 != first[a] >> 2;
+      steps_[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)] = {
+          std::uint32_t{next} << a, static_cast<std::uint32_t>((sample & 3) << 2 * a)};
     }
+    second[a] = first[a] + 3;
+    crossed |= unsigned{second[a] >> 2 != first[a] >> 2} << a;
   }
-  return result;
+  for (unsigned b = 0; b < 8; ++b) {
+    if (b & ~crossed) continue;
+    bool inside = false;
+    const float* const block = grid.find_block(b & 1 ? second.x : first.x, b & 2 ? second.y : first.y,
+                                               b & 4 ? second.z : first.z, &inside);
+    blocks_[b] = block ? block : constant_block(inside, grid.background);
+  }
 }
 
 } // namespace levelray

@@ -17,13 +17,16 @@ using NormalSchemes = std::tuple<InterpolationOfDifferences, DifferenceOfInterpo
 // analytic one is taken, and where that is too (all samples around are equal), +z.
 template <class Scheme>
 Vec3d unit_normal(const BlockGrid& grid, const CellPosition& at) {
-  const auto normalized = [](Vec3d g, Vec3d& unit) {
-    // Scale first: a grid of 10^-20 units per voxel has gradients whose squares underflow in nothing but
-    // float, yet grids of 10^-200 are as legal.
-    const double largest = std::max({std::fabs(g.x), std::fabs(g.y), std::fabs(g.z)});
-    if (!(largest > 0 && std::isfinite(largest))) return false;
-    g /= largest;
-    unit = g / std::sqrt(g.dot(g));
+  const auto normalized = [](const Vec3d& g, Vec3d& unit) {
+    const double square = g.dot(g);
+    if (!(square > 1e-250 && square < 1e250)) { // zero, NaN, or of a grid with extreme units
+      const double largest = std::max({std::fabs(g.x), std::fabs(g.y), std::fabs(g.z)});
+      if (!(largest > 0 && std::isfinite(largest))) return false;
+      unit = g / largest;
+      unit *= 1 / std::sqrt(unit.dot(unit));
+      return true;
+    }
+    unit = g * (1 / std::sqrt(square));
     return true;
   };
   Vec3d unit;

@@ -11,11 +11,11 @@ namespace levelray {
 
 namespace {
 
-CellPosition cell_position(const GridTransform& transform, const WorldRay& ray, const Hit& hit) {
+CellPosition cell_position(const Vec3d& origin, double per_voxel, const WorldRay& ray, const Hit& hit) {
   CellPosition at;
   at.cell = hit.cell;
-  const Vec3d p = transform.to_voxel(ray.at(hit.t));
-  for (int a = 0; a < 3; ++a) at.local[a] = std::clamp(p[a] - hit.cell[a], 0.0, 1.0);
+  const Vec3d p = (ray.at(hit.t) - origin) * per_voxel;
+  for (int a = 0; a < 3; ++a) at.local[a] = std::min(std::max(p[a] - hit.cell[a], 0.0), 1.0);
   return at;
 }
 
@@ -25,10 +25,13 @@ void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std:
                  std::string_view scheme, std::span<Vec3f> normals) {
   assert(rays.size() == hits.size() && hits.size() == normals.size());
   const BlockGrid& grid = level_set.grid();
+  const Vec3d origin = grid.transform.origin;
+  const double per_voxel = 1 / grid.transform.voxel_size;
   const auto work = [&]<class Scheme>(Scheme) {
     for (std::size_t i = 0; i < hits.size(); ++i)
-      normals[i] = hits[i] ? Vec3f(unit_normal<Scheme>(grid, cell_position(grid.transform, rays[i], hits[i])))
-                           : Vec3f(0, 0, 0);
+      normals[i] = hits[i]
+                       ? Vec3f(unit_normal<Scheme>(grid, cell_position(origin, per_voxel, rays[i], hits[i])))
+                       : Vec3f(0, 0, 0);
   };
   if (visit_method<NormalSchemes>(scheme, work)) return;
   std::string names;

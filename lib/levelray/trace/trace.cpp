@@ -56,22 +56,22 @@ void for_intersector(std::string_view name, Work&& work) {
 template <class Intersector>
 Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
   Hit hit;
-  const std::optional<RayFrame> frame = enter_box(level_set.surface(), level_set.grid().transform, ray);
-  if (!frame) return hit;
+  RayFrame frame;
+  if (!enter_box(level_set.surface(), level_set.grid().transform, ray, frame)) return hit;
 
-  StartingSide side(*frame);
+  StartingSide side(frame);
   WalkCounts walked;
   double proven = 0; // s of the last point known to lie on the starting side
-  walk_cells(level_set.surface(), *frame, walked, [&](const VisitedCell& cell) {
+  walk_cells(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
     CellRoot root;
     if (!Intersector::find(cell.segment, side.at_first(cell.segment), root)) {
       proven = cell.in;
       return false;
     }
     hit.status = HitStatus::hit;
-    hit.t = frame->t(cell.in + root.at * (cell.out - cell.in));
-    hit.t_outside = frame->t(root.outside >= 0 ? cell.in + root.outside * (cell.out - cell.in) : proven);
-    hit.cell = grid_cell(level_set.surface(), *frame, cell.position);
+    hit.t = frame.t(cell.in + root.at * (cell.out - cell.in));
+    hit.t_outside = frame.t(root.outside >= 0 ? cell.in + root.outside * (cell.out - cell.in) : proven);
+    hit.cell = grid_cell(level_set.surface(), frame, cell.position);
     return true;
   });
   hit.from_inside = hit && side.inside();
@@ -81,12 +81,12 @@ Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
 
 template <class Intersector>
 bool trace_any(const LevelSet& level_set, const WorldRay& ray, RayCounts& counts) {
-  const std::optional<RayFrame> frame = enter_box(level_set.surface(), level_set.grid().transform, ray);
-  if (!frame) return false;
+  RayFrame frame;
+  if (!enter_box(level_set.surface(), level_set.grid().transform, ray, frame)) return false;
 
-  StartingSide side(*frame);
+  StartingSide side(frame);
   WalkCounts walked;
-  const bool hit = walk_cells(level_set.surface(), *frame, walked, [&](const VisitedCell& cell) {
+  const bool hit = walk_cells(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
     return Intersector::exists(cell.segment, side.at_first(cell.segment));
   });
   add_counts(counts, walked);
