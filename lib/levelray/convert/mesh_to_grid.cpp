@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace levelray {
 
@@ -190,9 +191,6 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   ConvertedGrid result;
   ConvertReport& report = result.report;
   report.sign = options.sign == SignMethod::automatic ? SignMethod::winding : options.sign;
-  if (report.sign == SignMethod::pseudonormal)
-    throw Error(ErrorKind::usage,
-                "--sign pseudonormal is not there yet; legal: auto, winding, winding-abs, flood, unsigned");
   report.sign_reason = sign_reason(mesh, options.sign, report.sign);
 
   // Distances: unsigned, per node, with what the sheets separate.
@@ -204,6 +202,9 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   band_options.half_width_voxels = options.half_width_voxels;
   band_options.counting = counting_for(report.sign);
   band_options.find_components = report.sign != SignMethod::unsigned_distance;
+
+  std::optional<Pseudonormals> pseudonormals;
+  if (report.sign == SignMethod::pseudonormal) band_options.pseudonormals = &pseudonormals.emplace(mesh.mesh);
 
   Band band;
   band.box = node_box(mesh.report.bounds, transform, reach);

@@ -2,6 +2,7 @@
 
 #include "levelray/convert/distance_kernel.hpp"
 #include "levelray/convert/join_blocks.hpp"
+#include "levelray/convert/pseudonormal_vote.hpp"
 #include "levelray/convert/weighted_union_find.hpp"
 
 #include <algorithm>
@@ -176,6 +177,13 @@ NodeBand make_node_band(const VoxelMesh& mesh, const Vec3i& coord, std::span<con
     const Vec3i block_first = first_sample + Vec3i(bit_x(block), bit_y(block), bit_z(block)) * block_dim;
     band.thin_places +=
         find_block_components(sheets, mesh, s.mesh_list, block_first, options.counting, band.components);
+    if (options.pseudonormals) {
+      band.votes.resize(band.components.size(), 0);
+      for (std::size_t c = band.first[b]; c < band.components.size(); ++c)
+        band.votes[c] =
+            pseudonormal_vote(mesh, *options.pseudonormals, s.mesh_list, block_first, surface,
+                              band.components[c].samples, static_cast<float>(options.half_width_voxels));
+    }
     for (int axis = 0; axis < 3; ++axis) {
       const FaceCrossing crossing =
           find_face_crossing(sheets, mesh, s.mesh_list, block_first, axis, options.counting);
@@ -183,6 +191,7 @@ NodeBand make_node_band(const VoxelMesh& mesh, const Vec3i& coord, std::span<con
         band.faces.emplace_back(static_cast<std::uint16_t>(3 * block + axis), crossing);
     }
   }
+  if (options.pseudonormals) band.votes.resize(band.components.size(), 0);
   band.first[64] = static_cast<std::uint16_t>(band.components.size());
   if (options.find_components) join_within_node(band, options.counting);
   return band;

@@ -5,6 +5,7 @@
 #include "levelray/convert/link_components.hpp"
 #include "levelray/convert/voxel_mesh.hpp"
 #include "levelray/core/uninitialized_vector.hpp"
+#include "levelray/mesh/pseudonormal.hpp"
 
 #include <array>
 #include <bit>
@@ -17,7 +18,8 @@ namespace levelray {
 struct BandOptions {
   double half_width_voxels = 3;
   SheetCounting counting = SheetCounting::windings;
-  bool find_components = true; // false: distances only
+  bool find_components = true;                  // false: distances only
+  const Pseudonormals* pseudonormals = nullptr; // when given, components vote by them
 };
 
 struct NodeBand {
@@ -27,7 +29,8 @@ struct NodeBand {
       distance; // 64 per kept block: exact up to the half-width, in voxels; larger values mean "beyond"
   uninitialized_vector<float> sheet_distance; // the same to surface and caps, where caps are near; else empty
   std::vector<BlockComponent>
-      components; // of all 64 blocks, in order; a block that is not kept is one component
+      components;                  // of all 64 blocks, in order; a block that is not kept is one component
+  std::vector<std::int32_t> votes; // per component, when asked: see pseudonormal_vote.hpp
   std::array<std::uint16_t, 65> first{}; // block -> its first component
   std::vector<std::pair<std::uint16_t, FaceCrossing>>
       faces;                         // by 3 * block + axis, ascending; absent: nothing to say

@@ -87,6 +87,13 @@ Regions join_regions(const Band& band, SheetCounting counting) {
   }
   regions.outer_set = regions.set[0]; // the corner node is untouched
   regions.outer_winding = regions.winding[0];
+  regions.votes.assign(ids, 0);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (band.node_at[n] == Band::untouched) continue;
+    const NodeBand& node = band.nodes[static_cast<std::size_t>(band.node_at[n])];
+    for (std::size_t c = 0; c < node.votes.size(); ++c)
+      regions.votes[regions.set[regions.first_id[n] + node.components[c].node_component]] += node.votes[c];
+  }
   return regions;
 }
 

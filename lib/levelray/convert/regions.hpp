@@ -24,6 +24,7 @@ struct Regions {
   std::vector<std::int32_t> winding;   // per id: relative to the set's root
   std::uint32_t outer_set = 0;         // the set of what lies beyond the grid
   std::int32_t outer_winding = 0;      // the winding (relative to the root) of that
+  std::vector<std::int64_t> votes;     // per set: of its components, when they voted
   std::uint64_t contradictions = 0;    // joins that disagreed: never for chains without boundary
 
   bool connected_to_outside(std::uint32_t id) const { return set[id] == outer_set; }

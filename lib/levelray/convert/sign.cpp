@@ -62,8 +62,11 @@ NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWin
   const NodeBand* node = index == Band::untouched ? nullptr : &band.nodes[static_cast<std::size_t>(index)];
   const std::uint32_t first_id = regions.first_id[n];
 
-  if (method == SignMethod::flood) {
-    const auto inside = [&](std::uint32_t id) { return !regions.connected_to_outside(id); };
+  if (method == SignMethod::flood || method == SignMethod::pseudonormal) {
+    const auto inside = [&](std::uint32_t id) {
+      return !regions.connected_to_outside(id) &&
+             (method == SignMethod::flood || regions.votes[regions.set[id]] > 0);
+    };
     if (!node) {
       sides.inside = inside(first_id);
       return sides;
