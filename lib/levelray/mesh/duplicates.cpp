@@ -1,10 +1,12 @@
 #include "levelray/mesh/duplicates.hpp"
 
+#include "levelray/core/parallel.hpp"
 #include "levelray/mesh/orientation.hpp"
 #include "levelray/mesh/union_find.hpp"
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 namespace levelray {
 
@@ -20,25 +22,31 @@ using Group = std::vector<Member>; // ascending by triangle, at least two of the
 
 // Every triple is looked at where its two lowest vertices meet.
 std::vector<Group> find_groups(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
+  constexpr std::size_t grain = 65536;
+  std::vector<std::vector<Group>> found((edges.size() + grain - 1) / grain);
+  parallel_for(edges.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Group members;
+    for (std::size_t e = begin; e < end; ++e) {
+      const auto around = edges.of(e);
+      if (around.size() < 2) continue;
+      if (around.size() == 2 &&
+          opposite_vertex(triangles, around[0]) != opposite_vertex(triangles, around[1]))
+        continue;
+      members.clear();
+      for (const std::uint32_t h : around) {
+        const std::uint32_t apex = opposite_vertex(triangles, h);
+        if (apex > std::max(edge_start(triangles, h), edge_end(triangles, h)))
+          members.push_back({apex, h / 3, runs_up(triangles, h)});
+      }
+      std::sort(members.begin(), members.end());
+      for (std::size_t i = 0, next = 0; i < members.size(); i = next) {
+        while (next < members.size() && members[next].apex == members[i].apex) ++next;
+        if (next - i >= 2) found[begin / grain].emplace_back(members.begin() + i, members.begin() + next);
+      }
+    }
+  });
   std::vector<Group> groups;
-  Group members;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto around = edges.of(e);
-    if (around.size() < 2) continue;
-    if (around.size() == 2 && opposite_vertex(triangles, around[0]) != opposite_vertex(triangles, around[1]))
-      continue;
-    members.clear();
-    for (const std::uint32_t h : around) {
-      const std::uint32_t apex = opposite_vertex(triangles, h);
-      if (apex > std::max(edge_start(triangles, h), edge_end(triangles, h)))
-        members.push_back({apex, h / 3, runs_up(triangles, h)});
-    }
-    std::sort(members.begin(), members.end());
-    for (std::size_t i = 0, next = 0; i < members.size(); i = next) {
-      while (next < members.size() && members[next].apex == members[i].apex) ++next;
-      if (next - i >= 2) groups.emplace_back(members.begin() + i, members.begin() + next);
-    }
-  }
+  for (auto& part : found) std::move(part.begin(), part.end(), std::back_inserter(groups));
   return groups;
 }
 

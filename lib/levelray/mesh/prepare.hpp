@@ -1,5 +1,5 @@
-// From a soup to a mesh fit for signing: welds, drops what has no area, finds shells, makes orientation
-// consistent, and reports.
+// From a soup to a mesh fit for signing: welds, drops what is repeated or has less than three corners, makes
+// orientation consistent, turns shells outward, and reports.
 #pragma once
 
 #include "levelray/mesh/triangle_mesh.hpp"
@@ -10,29 +10,35 @@ namespace levelray {
 enum class Orientation { outward, inverted, mixed, non_orientable, undefined };
 const char* orientation_name(Orientation orientation);
 
-// Facts about the input, for the user. Vertices are merged by exact position before edges are counted.
+// Facts about the input, for the user, where nothing else is said. Vertices are merged by exact position (-0
+// is +0) and triangles with a repeated position left out before edges are counted; repeated triangles count.
 struct MeshReport {
   std::uint64_t vertices = 0;  // as read
   std::uint64_t triangles = 0; // as read, after fan or ear triangulation
   std::uint64_t unreferenced_vertices = 0;
   std::uint64_t merged_vertices = 0; // duplicates by exact position
-  std::uint64_t degenerate_triangles =
-      0; // a repeated position, or zero area: kept for distance when they have extent, no part of the sign
-  std::uint64_t duplicate_triangles = 0; // same three positions and orientation as another; dropped
-  std::uint64_t opposite_triangles = 0;  // pairs of opposite orientation
-  std::uint64_t components = 0;          // connected over shared vertices ("shells" over edges below)
-  std::uint64_t shells = 0;              // connected over shared edges
-  std::uint64_t boundary_edges = 0;      // edges with one triangle
-  std::uint64_t boundary_loops = 0;
+  // With a repeated position (dropped), or no area beyond rounding (kept: they hold edges together and have a
+  // distance).
+  std::uint64_t degenerate_triangles = 0;
+  // Same three positions and orientation as an earlier one; dropped, unless the mesh is closed because of
+  // them (duplicates.hpp).
+  std::uint64_t duplicate_triangles = 0;
+  // Three positions with triangles of both orientations; kept, unless the mesh is double-sided
+  // (duplicates.hpp).
+  std::uint64_t opposite_triangles = 0;
+  std::uint64_t components = 0;         // connected over shared vertices ("shells" over edges below)
+  std::uint64_t shells = 0;             // connected over shared edges
+  std::uint64_t boundary_edges = 0;     // edges with one triangle
+  std::uint64_t boundary_loops = 0;     // connected sets of them: holes that touch in a vertex count as one
   std::uint64_t non_manifold_edges = 0; // edges with more than two triangles
-  std::uint64_t non_manifold_vertices = 0;
-  std::uint64_t winding_clashes = 0;   // manifold edges whose two triangles run along them the same way
-  std::uint64_t flipped_triangles = 0; // turned by the repair
-  bool closed = false;                 // every edge has at least two triangles
+  std::uint64_t non_manifold_vertices = 0; // whose triangles are more than one fan, connected over edges
+  std::uint64_t winding_clashes = 0;       // edges with two triangles, which run along it the same way
+  std::uint64_t flipped_triangles = 0;     // turned by the repair
+  bool closed = false;                     // every edge has at least two triangles
   Orientation orientation = Orientation::undefined;
-  Box3d bounds;
-  double volume = 0; // signed, of the repaired mesh; open shells are capped towards their boundary's centroid
-  double longest_hole = 0; // world units: largest diagonal of a boundary loop's box
+  Box3d bounds;      // of the prepared mesh
+  double volume = 0; // signed, of the prepared mesh; open shells are capped towards their boundary's centroid
+  double longest_hole = 0; // world units: largest diagonal of a connected part of open_edges' box, see below
 };
 
 struct PreparedMesh {
@@ -49,7 +55,8 @@ struct PrepareOptions {
   bool trust_orientation = false; // leave every triangle as it is
 };
 
-// Throws Error(bad_input) for meshes without triangles or without extent.
+// Throws Error(bad_input) for meshes without triangles, without extent, or without area; Error(limit)
+// for 1.4e9 triangles and more. The result does not depend on the number of threads.
 PreparedMesh prepare_mesh(const TriangleMesh& mesh, const PrepareOptions& options = {});
 
 } // namespace levelray

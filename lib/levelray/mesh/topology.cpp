@@ -98,15 +98,30 @@ void count_topology(const TriangleMesh& mesh, const EdgeTable& edges, MeshReport
   const std::vector<Triangle>& triangles = mesh.triangles;
 
   // Edges.
+  struct Counted {
+    std::vector<std::array<std::uint32_t, 2>> boundary;
+    std::uint64_t non_manifold = 0, clashes = 0;
+  };
+  constexpr std::size_t grain = 65536;
+  std::vector<Counted> counted((edges.size() + grain - 1) / grain);
+  parallel_for(edges.size(), grain, [&](std::size_t begin, std::size_t end) {
+    Counted part;
+    for (std::size_t e = begin; e < end; ++e) {
+      const auto group = edges.of(e);
+      if (group.size() == 1)
+        part.boundary.push_back({edge_start(triangles, group[0]), edge_end(triangles, group[0])});
+      else if (group.size() == 2)
+        part.clashes += runs_up(triangles, group[0]) == runs_up(triangles, group[1]);
+      else
+        ++part.non_manifold;
+    }
+    counted[begin / grain] = std::move(part);
+  });
   std::vector<std::array<std::uint32_t, 2>> boundary;
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto group = edges.of(e);
-    if (group.size() == 1)
-      boundary.push_back({edge_start(triangles, group[0]), edge_end(triangles, group[0])});
-    else if (group.size() == 2)
-      report.winding_clashes += runs_up(triangles, group[0]) == runs_up(triangles, group[1]);
-    else
-      ++report.non_manifold_edges;
+  for (const Counted& part : counted) {
+    boundary.insert(boundary.end(), part.boundary.begin(), part.boundary.end());
+    report.non_manifold_edges += part.non_manifold;
+    report.winding_clashes += part.clashes;
   }
   report.boundary_edges = boundary.size();
   report.boundary_loops = Parts(boundary).count;
