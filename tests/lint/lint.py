@@ -27,7 +27,7 @@ DOORS = [
     (r"(OpenEXR/)?Imf|(OpenEXR/)?Iex|png\.h|setjmp\.h", r"lib/levelray/io/|tests/", "OpenEXR and libpng", "io/"),
     (r"nlohmann/", r"lib/levelray/io/|apps/|tests/", "JSON", "io/ and apps"),
     (r"openvdb/", r"lib/levelray/vdb/|tests/", "OpenVDB", "vdb/ and tests"),
-    (r"CLI/", r"apps/", "CLI11", "apps"),
+    (r"CLI/", r"apps/|tests/bench/", "CLI11", "apps and tests/bench"),
     (r"embree", r"tests/", "Embree", "tests"),
     (r"catch2/", r"tests/support/catch", "Catch2", "tests/support/catch.hpp"),
 ]

@@ -1,0 +1,193 @@
+#include "bench/trace_contest.hpp"
+
+#include "levelray/convert/mesh_to_grid.hpp"
+#include "levelray/core/parallel.hpp"
+#include "levelray/trace/level_set.hpp"
+#include "levelray/vdb/peer.hpp"
+#include "support/study_scene.hpp"
+#ifdef LEVELRAY_EMBREE
+#include "support/embree_scene.hpp"
+#endif
+
+#include <cmath>
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+namespace levelray::bench {
+
+namespace {
+
+constexpr std::size_t tile_rays = 1024; // a 32x32 tile
+
+struct Agreement {
+  std::size_t hits = 0, only_ours = 0, only_theirs = 0;
+  std::vector<double> errors; // |t difference| of common hits, in voxels, ascending
+
+  double quantile(double q) const {
+    return errors.empty() ? 0 : errors[static_cast<std::size_t>(q * static_cast<double>(errors.size() - 1))];
+  }
+  std::size_t disagreements() const { return only_ours + only_theirs; }
+  nlohmann::json json() const {
+    return {{"hits", hits},
+            {"only_levelray", only_ours},
+            {"only_other", only_theirs},
+            {"t_difference_voxels",
+             {{"median", quantile(0.5)},
+              {"p99", quantile(0.99)},
+              {"p999", quantile(0.999)},
+              {"max", quantile(1)}}}};
+  }
+};
+
+template <class TheirHit>
+Agreement agreement(const std::vector<Hit>& ours, const std::vector<TheirHit>& theirs, double voxel) {
+  Agreement result;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    result.hits += bool(ours[i]);
+    result.only_ours += ours[i] && !theirs[i].hit;
+    result.only_theirs += !ours[i] && theirs[i].hit;
+    if (ours[i] && theirs[i].hit)
+      result.errors.push_back(std::fabs(ours[i].t - static_cast<double>(theirs[i].t)) / voxel);
+  }
+  std::sort(result.errors.begin(), result.errors.end());
+  return result;
+}
+
+void print(const char* name, const Agreement& a, std::size_t rays) {
+  fmt::print("  against {}: {} of {} rays hit, {} only levelray's, {} only theirs; |t difference| in voxels: "
+             "median {:.2g}, "
+             "p99 {:.2g}, p99.9 {:.2g}, max {:.2g}\n",
+             name, a.hits, rays, a.only_ours, a.only_theirs, a.quantile(0.5), a.quantile(0.99),
+             a.quantile(0.999), a.quantile(1));
+}
+
+} // namespace
+
+bool has_embree() {
+#ifdef LEVELRAY_EMBREE
+  return true;
+#else
+  return false;
+#endif
+}
+
+nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) {
+  fmt::print("primary rays, N = {}, {}x{}, {}, {}, {} thread{}, {} repetitions\n", setup.resolution,
+             setup.image_size, setup.image_size, setup.intersector, setup.normals, setup.threads,
+             setup.threads > 1 ? "s" : "", setup.repetitions);
+  ConvertOptions options;
+  options.resolution = setup.resolution;
+  const BlockGrid grid = mesh_to_grid(prepare_mesh(mesh), options).grid;
+  const double voxel = grid.transform.voxel_size;
+  const std::vector<WorldRay> rays = test::study_rays(setup.image_size);
+  const LevelSet level_set(grid);
+  const OpenVdbLevelSet peer = OpenVdbLevelSet::from_grid(grid);
+
+  std::vector<Hit> hits(rays.size());
+  std::vector<Vec3f> normals(rays.size());
+  std::vector<PeerHit> peer_hits(rays.size());
+  const auto by_tiles = [&](const auto& work) {
+    const Stopwatch watch;
+    parallel_for(rays.size(), tile_rays,
+                 [&](std::size_t begin, std::size_t end) { work(begin, end - begin); });
+    return watch.elapsed();
+  };
+  std::vector<Contestant> contestants;
+  contestants.push_back({"levelray", [&] {
+                           return by_tiles([&](std::size_t i, std::size_t n) {
+                             const std::span<const WorldRay> tile(&rays[i], n);
+                             closest_hits(level_set, tile, setup.intersector, {&hits[i], n});
+                             hit_normals(level_set, tile, {&hits[i], n}, setup.normals, {&normals[i], n});
+                           });
+                         }});
+  contestants.push_back({"levelray's level set", [&] {
+                           const Stopwatch watch;
+                           const LevelSet again(grid);
+                           const Time time = watch.elapsed();
+                           if (again.surface().block_count() != level_set.surface().block_count())
+                             throw std::runtime_error("a repeated preparation differs");
+                           return time;
+                         }});
+  contestants.push_back({"OpenVDB LevelSetRayIntersector", [&] {
+                           const PeerTime time = peer.trace(rays, peer_hits);
+                           return Time{time.wall_ms, time.cpu_ms};
+                         }});
+#ifdef LEVELRAY_EMBREE
+  std::optional<test::EmbreeScene> scene;
+  std::vector<test::EmbreeHit> embree_hits(rays.size());
+  if (setup.embree) {
+    scene.emplace(mesh);
+    contestants.push_back({"Embree, single rays", [&] {
+                             return by_tiles([&](std::size_t i, std::size_t n) {
+                               scene->trace({&rays[i], n}, {&embree_hits[i], n});
+                             });
+                           }});
+    contestants.push_back({"Embree, packets of 16", [&] {
+                             return by_tiles([&](std::size_t i, std::size_t n) {
+                               scene->trace_packets({&rays[i], n}, {&embree_hits[i], n});
+                             });
+                           }});
+  }
+#endif
+
+  // Everyone's answers before anyone's times.
+  for (Contestant& c : contestants) c.run();
+  const Agreement with_openvdb = agreement(hits, peer_hits, voxel);
+  print("OpenVDB", with_openvdb, rays.size());
+  nlohmann::json verified{{"openvdb", with_openvdb.json()}};
+#ifdef LEVELRAY_EMBREE
+  if (scene) {
+    const Agreement with_embree = agreement(hits, embree_hits, voxel);
+    print("the mesh (Embree)", with_embree, rays.size());
+    verified["embree"] = with_embree.json();
+  }
+#endif
+  if (with_openvdb.hits < rays.size() / 100)
+    throw std::runtime_error("hardly a ray hits: nothing to measure");
+  if (with_openvdb.disagreements() > rays.size() / 1000)
+    throw std::runtime_error("levelray and OpenVDB disagree about what is hit");
+  if (!(with_openvdb.quantile(0.5) <= 0.01 && with_openvdb.quantile(0.99) <= 0.5))
+    throw std::runtime_error("levelray and OpenVDB disagree about where the surface is");
+
+  compete(contestants, setup.repetitions);
+  nlohmann::json rows = nlohmann::json::array();
+  const double count = static_cast<double>(rays.size());
+  fmt::print("  {:<32}{:>12}{:>28}{:>20}\n", "", "Mray/s CPU", "CPU ms: median (min-max)", "Mray/s wall");
+  for (const Contestant& c : contestants) {
+    const Spread p = cpu(c), w = wall(c);
+    const bool traces = &c != &contestants[1];
+    fmt::print("  {:<32}{:>12}{:>12.1f} ({:.1f}-{:.1f}){:>14}\n", c.name,
+               traces ? fmt::format("{:.2f}", count / p.median * 1e-3) : "", p.median, p.min, p.max,
+               traces ? fmt::format("{:.2f}", count / w.median * 1e-3) : "");
+    rows.push_back(to_json(c));
+    if (traces) rows.back()["rays_per_cpu_second"] = count / p.median * 1e3;
+    if (traces) rows.back()["rays_per_second"] = count / w.median * 1e3;
+  }
+  const Contestant &levelray = contestants[0], &prepare = contestants[1], &openvdb = contestants[2];
+  const Spread alone = cpu_ratio({&openvdb}, {&levelray}),
+               whole = cpu_ratio({&openvdb}, {&levelray, &prepare});
+  const Spread alone_wall = wall_ratio({&openvdb}, {&levelray});
+  fmt::print("  OpenVDB / levelray, CPU: {:.2f} ({:.2f}-{:.2f}); with the level set's building {:.2f} "
+             "({:.2f}-{:.2f}); wall: {:.2f}\n",
+             alone.median, alone.min, alone.max, whole.median, whole.min, whole.max, alone_wall.median);
+  for (std::size_t i = 3; i < contestants.size(); ++i)
+    fmt::print("  {} / levelray, CPU: {:.2f}\n", contestants[i].name,
+               cpu_ratio({&contestants[i]}, {&levelray}).median);
+  fmt::print("\n");
+  return {{"resolution", setup.resolution},
+          {"image_size", setup.image_size},
+          {"intersector", setup.intersector},
+          {"normals", setup.normals},
+          {"threads", setup.threads},
+          {"level_set_bytes", level_set.bytes()},
+          {"grid_bytes", grid.bytes()},
+          {"verified", verified},
+          {"contestants", rows},
+          {"cpu_ratio", to_json(alone)},
+          {"cpu_ratio_with_level_set", to_json(whole)},
+          {"wall_ratio", to_json(alone_wall)}};
+}
+
+} // namespace levelray::bench
