@@ -100,7 +100,7 @@ TEST_CASE("malformed OBJ face corners are refused with their line") {
              StartsWith("x.obj:15: unexpected byte 0x00"));
 }
 
-TEST_CASE("PLY strips alternate, end at negative indices and drop their stitches") {
+TEST_CASE("row 23: PLY strips alternate, end at negative indices and drop their stitches") {
   std::string text =
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
       "element tristrips 2\nproperty list int int vertex_indices\nend_header\n"
@@ -144,7 +144,28 @@ TEST_CASE("PLY headers may end their lines in any way, and data may begin with a
   CHECK(parsed(mixed, "x.ply").mesh.vertices == mesh.vertices);
 }
 
-TEST_CASE("OFF headers come alone, glued, on one line, with prefixes, comments and without") {
+TEST_CASE("what follows the last PLY element is told, and faces whose vertices were cut off are dropped") {
+  CHECK(parsed(ply_text(box()) + "\n\n", "x.ply").warnings.empty());
+  CHECK(parsed(ply_text(box()) + "3 0 1 2\n", "x.ply").warnings.at(0) ==
+        "x.ply:24: 8 bytes after the last announced element ignored");
+  const std::string bytes = ply_binary(box(), false);
+  CHECK(parsed(bytes + "12345", "x.ply").warnings.at(0) ==
+        fmt::format("x.ply@{}: 5 bytes after the last announced element ignored", bytes.size()));
+
+  const std::string faces_first =
+      "ply\nformat ascii 1.0\nelement face 2\nproperty list uchar int vertex_indices\n"
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "end_header\n3 0 1 2\n3 1 2 3\n0 0 0\n1 0 0\n0 1 0\n";
+  CHECK_THAT(refusal(faces_first, "x.ply"),
+             Contains("announces 4 vertices") || Contains("data ends in vertex 4"));
+  MeshReadOptions salvage;
+  salvage.salvage = true;
+  const MeshFile file = parsed(faces_first, "x.ply", salvage);
+  CHECK(file.mesh.triangles == std::vector<Triangle>{{0, 1, 2}});
+  CHECK(file.warnings.at(1) == "x.ply:11: 1 face dropped with the vertices that were cut off");
+}
+
+TEST_CASE("row 25: OFF headers come alone, glued, on one line, with prefixes, comments and without") {
   const std::string body = off_text(box()).substr(4);
   const auto check = [](const std::string& text) { check_box(parsed(text, "x.off"), "off"); };
   check("OFF" + body);
@@ -189,7 +210,7 @@ TEST_CASE("OFF headers come alone, glued, on one line, with prefixes, comments a
   }
 }
 
-TEST_CASE("OFF kinds that are not read are refused by name") {
+TEST_CASE("row 25: OFF kinds that are not read are refused by name") {
   const std::string body = off_text(tetrahedron()).substr(4);
   for (const char* word : {"4OFF", "nOFF", "4nOFF", "C4OFF"})
     CHECK(refusal(std::string(word) + "\n" + body, "x.off") ==
@@ -202,6 +223,8 @@ TEST_CASE("OFF kinds that are not read are refused by name") {
 TEST_CASE("row 28: STL files with odd names, cases and solids load") {
   check_box(parsed(stl_binary(box(), "solid by a writer that should know better"), "x.stl"), "stl");
   check_box(parsed(stl_binary(box(), std::string("solid\0\0 facet", 12)), "x.stl"), "stl");
+  check_box(parsed(stl_binary(box(), "ply by way of OFF"), "x.stl"), "stl");
+  check_box(parsed(stl_binary(box(), "off the shelf"), "x"), "stl");
   std::string upper = stl_text(box());
   for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   check_box(parsed(upper, "x.stl"), "stl");

@@ -174,13 +174,13 @@ TEST_CASE("extreme coordinates change nothing") {
 }
 
 TEST_CASE("a large concave polygon takes no time to speak of") {
-  // A saw of 20,000 corners.
+  // A saw of 8,000 corners, half of them reflex.
   std::vector<Vec3d> points;
-  for (int i = 0; i < 10000; ++i) points.push_back({i * 1.0, i % 2 == 0 ? 0.0 : 0.9, 0});
-  for (int i = 9999; i >= 0; --i) points.push_back({i * 1.0, i % 2 == 0 ? 1.0 : 1.9, 0});
+  for (int i = 0; i < 4000; ++i) points.push_back({i * 1.0, i % 2 == 0 ? 0.0 : 0.9, 0});
+  for (int i = 3999; i >= 0; --i) points.push_back({i * 1.0, i % 2 == 0 ? 1.0 : 1.9, 0});
   PolygonTriangulator triangulator;
   std::vector<Triangle> triangles;
   CHECK(triangulator.triangulate(points, triangles).simple);
   CHECK(triangles.size() == points.size() - 2);
-  CHECK(triangulator.work() < 1'000'000'000);
+  CHECK(triangulator.work() < points.size() * points.size());
 }

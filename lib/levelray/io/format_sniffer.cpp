@@ -62,15 +62,22 @@ bool is_utf16(std::string_view text) {
 
 std::string sniff_format(const MeshSource& source) {
   const std::string_view text(source.begin(), source.size());
+  // The header of a binary STL may hold any words, those of other formats too; that the announced size is the
+  // file's is no accident. No text has a count below 2^29 in that place.
+  if (is_exact_binary_stl(source)) return "stl";
   for (const Signature& signature : foreign)
     if (text.substr(0, signature.bytes.size()) == signature.bytes)
       source.fail(fmt::format("is {}", signature.what));
   if (is_utf16(text)) source.fail(source.begin(), "is UTF-16 text; convert it to UTF-8");
 
-  if (text.substr(0, 3) == "ply" && text.size() > 3 && is_space(text[3])) return "ply";
-
-  // STL: either all sizes agree, or it is a text with a facet or an end close to its beginning.
   TextCursor cursor{source.begin(), source.end()};
+  if (cursor.word() == "ply") {
+    cursor.skip_blanks();
+    if (cursor.at_line_end()) return "ply";
+  }
+
+  // Text STL: with a facet or an end close to its beginning.
+  cursor.at = source.begin();
   cursor.skip_space();
   const std::string_view first = cursor.word();
   if (equal_ignoring_case(first, "solid")) {

@@ -25,6 +25,7 @@ class BinaryValues {
   }
   const char* at() const { return at_; }
   void begin_instance() {}
+  void skip_padding() {}
 
   double number(PlyType type) { return fetch<double>(type); }
   std::int64_t integer(PlyType type) { return fetch<std::int64_t>(type); }
@@ -85,6 +86,7 @@ class TextValues {
       source_.fail(here, fmt::format("unexpected value {}; the values of a line do not match the header",
                                      source_.quote(here)));
   }
+  void skip_padding() { cursor_.skip_space(); }
   double number(PlyType) {
     const char* word = next();
     const ParsedDouble parsed = parse_double(word, cursor_.end);
@@ -151,6 +153,10 @@ class BodyReader {
       }
       if (cut_) break;
     }
+    values_.skip_padding();
+    if (!cut_ && remaining() != 0)
+      builder_.warn(fmt::format("{}: {} after the last announced element ignored",
+                                source_.place(values_.at()), bytes_text(double(remaining()))));
     if (!ignored.empty())
       builder_.warn(fmt::format("{}: {} ignored", source_.name(), printable(ignored, 100)));
     return builder_.finish("ply", "PLY");

@@ -143,6 +143,7 @@ void SoupBuilder::add_known_polygon(const char* at) {
 
 void SoupBuilder::truncated(const char* at, const std::string& reason) {
   if (!options_.salvage) source_.fail(at, reason + "; --salvage takes what is there");
+  cut_ = true;
   warn(source_.place(at) + ": " + reason + "; what is there was taken");
 }
 
@@ -151,14 +152,20 @@ void SoupBuilder::add_deferred() {
     const std::size_t stop =
         i + 1 < deferred_.size() ? deferred_[i + 1].first_corner : deferred_corners_.size();
     corners_.clear();
+    bool lost = false;
     for (std::size_t k = deferred_[i].first_corner; k < stop; ++k) {
       const std::uint64_t corner = deferred_corners_[k];
-      if (corner >= mesh_.vertices.size())
+      lost = corner >= mesh_.vertices.size();
+      if (lost && cut_) break; // its vertices were cut off
+      if (lost)
         source_.fail(deferred_[i].at,
                      fmt::format("vertex index {}, file has {} vertices", corner + 1, mesh_.vertices.size()));
       corners_.push_back(static_cast<std::uint32_t>(corner));
     }
-    add_known_polygon(deferred_[i].at);
+    if (lost)
+      lost_faces_.add(deferred_[i].at);
+    else
+      add_known_polygon(deferred_[i].at);
   }
 }
 
@@ -186,6 +193,8 @@ void SoupBuilder::write_remarks() {
   remark(bad_vertices_, "vertex with a non-finite coordinate dropped",
          "vertices with non-finite coordinates dropped");
   remark(dropped_faces_, "face with a non-finite corner dropped", "faces with non-finite corners dropped");
+  remark(lost_faces_, "face dropped with the vertices that were cut off",
+         "faces dropped with the vertices that were cut off");
   remark(short_faces_, "face with fewer than three corners skipped",
          "faces with fewer than three corners skipped");
   remark(repeated_corners_, "face repeats a vertex; left out as far as it has no area",

@@ -78,8 +78,9 @@ class SoupBuilder {
   std::vector<Triangle> pieces_;
   PolygonTriangulator triangulator_;
 
-  Count bad_vertices_, dropped_faces_, short_faces_, repeated_corners_, not_planar_, not_simple_;
+  Count bad_vertices_, dropped_faces_, lost_faces_, short_faces_, repeated_corners_, not_planar_, not_simple_;
   double largest_deviation_ = 0;
+  bool cut_ = false; // truncated, and salvaged
 };
 
 } // namespace levelray

@@ -166,14 +166,18 @@ MeshFile AsciiStlReader::read() {
 
 } // namespace
 
+bool is_exact_binary_stl(const MeshSource& source) noexcept {
+  if (source.size() < header_bytes) return false;
+  const std::uint64_t count = load<std::uint32_t>(source.begin() + 80, false);
+  return count > 0 && count * facet_bytes + header_bytes == source.size();
+}
+
 MeshFile read_stl(SoupBuilder& builder) {
   const MeshSource& source = builder.source();
   // Binary files may start with "solid", so that word decides last: the announced size first, then bytes that
   // no text holds.
   const bool has_header = source.size() >= header_bytes;
-  const bool exact =
-      has_header &&
-      load<std::uint32_t>(source.begin() + 80, false) * facet_bytes + header_bytes == source.size();
+  const bool exact = is_exact_binary_stl(source);
   TextCursor start{source.begin(), source.end()};
   start.skip_space();
   const bool solid = equal_ignoring_case(start.word().substr(0, 5), "solid");
