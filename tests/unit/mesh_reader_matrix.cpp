@@ -1,6 +1,6 @@
-// The bad inputs that users really hand over, row by row: each gives the right mesh or one line that says what
-// is wrong, where, and what to do. Rows 18 to 29 are in mesh_reader_matrix_counts.cpp, those of them that load
-// (23, 25, 28) in mesh_reader_formats.cpp.
+// The bad inputs that users really hand over, row by row: each gives the right mesh or one line that says
+// what is wrong, where, and what to do. Rows 18 to 29 are in mesh_reader_matrix_counts.cpp, those of them
+// that load (23, 25, 28) in mesh_reader_formats.cpp.
 #include "support/mesh_texts.hpp"
 
 #include <filesystem>
