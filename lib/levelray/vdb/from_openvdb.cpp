@@ -2,63 +2,20 @@
 
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/vdb/openvdb_layout.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
 namespace levelray {
+
+using namespace openvdb_layout;
 
 namespace {
 
 constexpr int index_limit = 1 << 30;            // so that no sum of two indices overflows
 constexpr std::uint32_t node_mark = 0xFFFFFFFD; // a table entry that will become a node
-
-struct Tile {
-  openvdb::CoordBBox box;
-  float value;
-  bool active;
-};
-
-// What the samples of a leaf become.
-struct LeafSummary {
-  std::uint8_t stored = 0, inside = 0; // octants: bit x + 2 y + 4 z
-};
-
-struct Statistics {
-  std::uint64_t active = 0, odd_inactive = 0, zero_inactive = 0;
-  float largest = 0; // |active value|
-  bool negative = false, positive = false;
-  bool bad = false; // a value that is not finite
-  openvdb::Coord bad_at;
-
-  void add(const Statistics& other) {
-    active += other.active, odd_inactive += other.odd_inactive, zero_inactive += other.zero_inactive;
-    largest = std::max(largest, other.largest);
-    negative |= other.negative, positive |= other.positive;
-    if (!bad && other.bad) bad = true, bad_at = other.bad_at;
-  }
-};
-
-// A sample as ours.
-struct Sample {
-  float value;
-  bool active;
-};
-
-template <class Value>
-float to_float(Value v) {
-  return static_cast<float>(v) + 0.0f; // -0 becomes +0
-}
-
-Sample convert(float value, bool active, float file_background, float background) {
-  if (active) return {value, true};
-  if (value == file_background || value == 0) return {background, false};
-  if (value == -file_background) return {-background, false};
-  return {value, true};
-}
 
 template <class Grid>
 class Importer {
@@ -83,6 +40,9 @@ class Importer {
           fmt::format("{} inactive samples are neither +background nor -background; they were kept as "
                       "part of the band",
                       total_.odd_inactive));
+    if (total_.zero_inactive)
+      warnings.push_back(
+          fmt::format("{} inactive samples are 0; they were taken for outside", total_.zero_inactive));
     if (odd_tiles_)
       warnings.push_back(
           fmt::format("{} inactive tiles are neither +background nor -background; only their signs were used",
@@ -201,12 +161,6 @@ class Importer {
     return convert(to_float(leaf.buffer().data()[i]), leaf.isValueOn(i), file_background_, out_.background);
   }
 
-  static openvdb::Index leaf_index(int octant, int s) { // leaf values run z fastest
-    const int x = (octant & 1) * 4 + bit_x(s), y = (octant >> 1 & 1) * 4 + bit_y(s),
-              z = (octant >> 2) * 4 + bit_z(s);
-    return static_cast<openvdb::Index>(x << 6 | y << 3 | z);
-  }
-
   // Decides which octants of the leaves are stored.
   void summarise() {
     summaries_.resize(leaves_.size());
@@ -234,37 +188,6 @@ class Importer {
     return out_.node_table[at.x + static_cast<std::size_t>(out_.node_dims.x) *
                                       (at.y + static_cast<std::size_t>(out_.node_dims.y) * at.z)];
   }
-  static Vec3i node_of(const openvdb::Coord& c) { return {c.x() >> 4, c.y() >> 4, c.z() >> 4}; }
-  static bool whole_nodes(const Tile& t) { return t.box.dim().x() >= node_dim; }
-
-  // Calls visit(node coordinates, blocks of it) for the part of each node that the tile covers.
-  template <class Visit>
-  static void for_nodes(const Tile& t, const Visit& visit) {
-    const Vec3i low = node_of(t.box.min()), high = node_of(t.box.max());
-    if (!whole_nodes(t)) { // 8^3 samples: an octant of a node
-      visit(low, octant_blocks(octant_of(t.box.min())));
-      return;
-    }
-    for (int z = low.z; z <= high.z; ++z)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) visit(Vec3i(x, y, z), ~std::uint64_t{0});
-  }
-
-  static int octant_of(const openvdb::Coord& c) {
-    return (c.x() >> 3 & 1) | (c.y() >> 3 & 1) << 1 | (c.z() >> 3 & 1) << 2;
-  }
-  static int block_bit(int node_octant, int leaf_octant) {
-    return (2 * (node_octant & 1) + (leaf_octant & 1)) |
-           (2 * (node_octant >> 1 & 1) + (leaf_octant >> 1 & 1)) << 2 |
-           (2 * (node_octant >> 2) + (leaf_octant >> 2)) << 4;
-  }
-  static std::uint64_t octant_blocks(int octant, unsigned leaf_octants = 0xFF) {
-    std::uint64_t mask = 0;
-    for (int o = 0; o < 8; ++o)
-      if (leaf_octants >> o & 1) mask |= std::uint64_t{1} << block_bit(octant, o);
-    return mask;
-  }
-
   // Checks what the result needs against the budget, then makes table and nodes.
   void lay_out() {
     double entries = 1;

@@ -41,8 +41,8 @@ class In {
  public:
   In(const ByteSource& read, const std::string& path) : read_(read), path_(path) {}
   [[noreturn]] void fail(const char* what) const {
-    throw Error(ErrorKind::bad_input,
-                path_ + ": the reader process answered nonsense (" + what + "); the file is damaged or hostile");
+    throw Error(ErrorKind::bad_input, path_ + ": the reader process answered nonsense (" + what +
+                                          "); the file is damaged or hostile");
   }
   void check(bool good, const char* what) const {
     if (!good) fail(what);
