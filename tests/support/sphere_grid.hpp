@@ -24,8 +24,7 @@ BlockGrid sample_grid(const Field& field, double voxel_size, double half_width_v
   grid.transform.origin = origin;
   grid.transform.voxel_size = voxel_size;
   grid.background = static_cast<float>(half_width_voxels * voxel_size);
-  if (grid.background <
-      half_width_voxels * voxel_size) // never less than the half-width, as OpenVDB's checks want it
+  if (grid.half_width_voxels() < half_width_voxels) // never less, as OpenVDB's check of level sets wants it
     grid.background = std::nextafter(grid.background, std::numeric_limits<float>::infinity());
 
   // Cover the samples of the box and one more on each side by nodes.

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 namespace levelray {
 
@@ -51,6 +53,8 @@ BlockGrid assemble_grid(Band& band, const std::vector<NodeSides>& sides, const G
   BlockGrid grid;
   grid.transform = transform;
   grid.background = static_cast<float>(half_width_voxels * transform.voxel_size);
+  if (grid.half_width_voxels() < half_width_voxels) // never less, as OpenVDB's check of level sets wants it
+    grid.background = std::nextafter(grid.background, std::numeric_limits<float>::infinity());
   grid.node_min = band.box.node_min;
   grid.node_dims = band.box.dims;
   const std::size_t count = band.box.count();
