@@ -9,13 +9,14 @@ namespace levelray {
 
 namespace {
 
-// 2^-exponent(x) for finite x > 0, exact; multiplying x by it gives [1,2), except where the result would not
-// be a normal number.
+// Directions of other lengths (in voxels, by their largest component) count as none: shorter ones would make
+// t overflow, longer ones make it denormal.
+constexpr double shortest = 0x1p-960, longest = 0x1p1000;
+
+// 2^-exponent(x) for x in that range: exact, and x times it lies in [1,2).
 double reciprocal_power(double x) {
-  const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> 52); // sign bit is clear
-  if (exponent != 0 && exponent < 2046)
-    return std::bit_cast<double>(static_cast<std::uint64_t>(2046 - exponent) << 52);
-  return std::ldexp(1.0, std::clamp(-std::ilogb(x), -1022, 1023));
+  return std::bit_cast<double>((2046 - (std::bit_cast<std::uint64_t>(x) >> 52))
+                               << 52); // the sign bit is clear
 }
 
 } // namespace
@@ -29,7 +30,7 @@ bool enter_box(const SurfaceBlocks& surface, const GridTransform& transform, con
   const double scaled[3] = {ray.direction.x * per_voxel, ray.direction.y * per_voxel,
                             ray.direction.z * per_voxel};
   const double largest = std::max({std::fabs(scaled[0]), std::fabs(scaled[1]), std::fabs(scaled[2])});
-  if (!(largest > 0 && largest <= std::numeric_limits<double>::max())) return false;
+  if (!(largest >= shortest && largest <= longest)) return false;
   const double scale = reciprocal_power(largest);
 
   // Mirror, clip to the slabs.

@@ -4,9 +4,10 @@
 // (f > 0) reports the first t in [t_min, t_max] with f <= 0, be it a crossing or a touch; one that begins
 // inside (f < 0) the first t with f >= 0; one that begins on the surface its beginning. Intervals are closed.
 //
-// Any direction but zero, of any finite length; its t is in units of that length. Infinite t_min and t_max
-// are fine, and so is an interval that begins before 0. A zero or infinite direction, t_min > t_max, or a NaN
-// anywhere is a miss. No ray makes these functions hang or throw, but for an unknown intersector.
+// Any direction of 2^-960 to 2^1000 voxels; its t is in units of that length. Infinite t_min and t_max are
+// fine, and so is an interval that begins before 0. A direction that is zero, infinite or beyond those
+// lengths, t_min > t_max, or a NaN anywhere is a miss. No ray makes these functions hang or throw, but for an
+// unknown intersector.
 #pragma once
 
 #include "levelray/core/ray.hpp"

@@ -1,0 +1,129 @@
+#include "levelray/normal/normals.hpp"
+#include "levelray/normal/neighbourhood.hpp"
+#include "levelray/trace/level_set.hpp"
+#include "support/catch.hpp"
+#include "support/trace_fixtures.hpp"
+
+using namespace levelray;
+using namespace levelray::test;
+
+namespace {
+
+double degrees_between(const Vec3d& a, const Vec3d& b) {
+  return std::atan2(a.cross(b).length(), a.dot(b)) * 180 / 3.14159265358979323846;
+}
+
+} // namespace
+
+TEMPLATE_LIST_TEST_CASE("a scheme gives a plane's normal exactly", "", NormalSchemes) {
+  CHECK_FALSE(TestType::name.empty());
+  const Vec3d n = Vec3d(0.48, -0.6, 0.64);
+  const BlockGrid grid = sample_grid([&](const Vec3d& p) { return p.dot(n) + 0.37; }, 1, 8,
+                                     Box3d(Vec3d(-13, -9, -11), Vec3d(12, 14, 19)));
+  RandomRays random(3);
+  for (int i = 0; i < 200; ++i) {
+    // Cells whose neighbourhood is clear of the clamped band and the border.
+    Vec3d p = random.in_box(Box3d(Vec3d(-7, -4, -5), Vec3d(7, 8, 11)));
+    p -= n * (p.dot(n) + 0.37);
+    CellPosition at;
+    for (int a = 0; a < 3; ++a)
+      at.cell[a] = static_cast<int>(std::floor(p[a])), at.local[a] = p[a] - at.cell[a];
+    // Samples are rounded to float: 2^-24 of values below 8, differences over a voxel, in 3 components.
+    CHECK((unit_normal<TestType>(grid, at) - n).length() < 8 * 0x1p-24 * 4);
+  }
+}
+
+TEMPLATE_LIST_TEST_CASE("a scheme's normals on a sphere are as good as it can be", "", NormalSchemes) {
+  const Vec3d centre(-2.3, 1.7, 0.4);
+  const BlockGrid grid = sphere_grid(20);
+  const LevelSet level_set(grid);
+  RandomRays random(5);
+  double worst = 0, sum = 0;
+  int hits = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const WorldRay ray = random.through(active_box(grid));
+    const Hit hit = closest_hit(level_set, ray);
+    if (!hit) continue;
+    const Vec3d normal(hit_normal(level_set, ray, hit, TestType::name));
+    CHECK(std::fabs(normal.length() - 1) < 1e-6);
+    const double angle = degrees_between(normal, ray.at(hit.t) - centre);
+    worst = std::max(worst, angle);
+    sum += angle;
+    ++hits;
+  }
+  // Curvature 1/20 per voxel turns the normal by 2.9 degrees per voxel. The analytic gradient is piecewise,
+  // off by up to half a cell's diagonal of that (methods study: mean 0.89, max 2.0); the smooth schemes are
+  // off by third derivatives only, 1/20^2 rad = 0.14 degrees over small factors (means 0.014 and 0.007,
+  // maxima 0.03).
+  const bool smooth = TestType::name != "analytic";
+  CAPTURE(TestType::name, worst, sum / hits, hits);
+  CHECK(worst < (smooth ? 0.14 : 2.5));
+  CHECK(sum / hits < (smooth ? 0.05 : 1.3));
+}
+
+TEMPLATE_LIST_TEST_CASE("smooth schemes do not jump between cells", "", NormalSchemes) {
+  const BlockGrid grid = torus_grid(12, 2.5);
+  RandomRays random(9);
+  const Box3i box = grid.active_bounds();
+  for (int i = 0; i < 2000; ++i) {
+    CellPosition low;
+    for (int a = 0; a < 3; ++a) {
+      low.cell[a] = static_cast<int>(random.uniform(box.min[a], box.max[a]));
+      low.local[a] = random.uniform(0, 1);
+    }
+    const int axis = i % 3;
+    low.local[axis] = 1;
+    CellPosition high = low;
+    high.cell[axis] += 1;
+    high.local[axis] = 0;
+    if (TestType::name == "analytic") {
+      CHECK(unit_normal<TestType>(grid, low).length() == Approx(1));
+      continue;
+    }
+    const Vec3d a = TestType::gradient(grid, low), b = TestType::gradient(grid, high);
+    CHECK((a - b).length() < 1e-5); // float sums of values below 3
+  }
+}
+
+TEMPLATE_LIST_TEST_CASE("where all samples are equal a normal is still of unit length", "", NormalSchemes) {
+  BlockGrid grid;
+  grid.background = 2;
+  const Vec3d normal = unit_normal<TestType>(grid, CellPosition{});
+  CHECK(normal == Vec3d(0, 0, 1));
+}
+
+TEMPLATE_LIST_TEST_CASE("extreme units do not matter to normals", "", NormalSchemes) {
+  for (const double voxel : {1e-9, 1e9}) {
+    const BlockGrid grid = sphere_grid(6, 3, voxel);
+    const LevelSet level_set(grid);
+    WorldRay ray;
+    ray.origin = Vec3d(-2.3, 1.7, 40) * voxel;
+    ray.direction = Vec3d(0, 0, -1);
+    const Hit hit = closest_hit(level_set, ray);
+    REQUIRE(hit);
+    CHECK(degrees_between(Vec3d(hit_normal(level_set, ray, hit, TestType::name)), Vec3d(0, 0, 1)) < 8);
+  }
+}
+
+TEST_CASE("a neighbourhood is the samples around its cell") {
+  const BlockGrid grid = sphere_grid(5);
+  const Box3i box = grid.active_bounds();
+  RandomRays random(6);
+  for (int n = 0; n < 500; ++n) {
+    Vec3i cell;
+    for (int a = 0; a < 3; ++a)
+      cell[a] = static_cast<int>(std::floor(random.uniform(box.min[a] - 6, box.max[a] + 6)));
+    const Neighbourhood samples(grid, cell);
+    for (int k = -1; k < 3; ++k)
+      for (int j = -1; j < 3; ++j)
+        for (int i = -1; i < 3; ++i)
+          REQUIRE(samples.at(i, j, k) == grid.value(cell.x + i, cell.y + j, cell.z + k));
+  }
+}
+
+TEST_CASE("an unknown normal scheme is refused with the legal names") {
+  const BlockGrid grid = sphere_grid(3);
+  const LevelSet level_set(grid);
+  CHECK_THROWS_WITH(hit_normal(level_set, WorldRay{}, Hit{}, "smooth"),
+                    Catch::Contains("smooth") && Catch::Contains("analytic"));
+}
