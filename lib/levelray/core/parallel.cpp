@@ -8,6 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/version.h>
 
 namespace levelray {
 
@@ -68,6 +69,10 @@ ThreadLimit::~ThreadLimit() = default;
 
 int thread_count() {
   return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
+const char* tbb_version() {
+  return TBB_VERSION_STRING;
 }
 
 void request_cancel() noexcept {

@@ -32,6 +32,9 @@ class ThreadLimit {
 // The number of threads that parallel loops use now.
 int thread_count();
 
+// The version of the library beneath, e.g. "2021.8".
+const char* tbb_version();
+
 // Asks running and later work to stop; async-signal-safe. Loops notice between chunks, serial stages by
 // `check_cancel()`.
 void request_cancel() noexcept;

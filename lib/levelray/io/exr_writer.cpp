@@ -9,6 +9,7 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <OpenEXRConfig.h>
 #include <algorithm>
 #include <cmath>
 #include <half.h>
@@ -98,6 +99,10 @@ std::string encode_exr(const Image& image, const ExrOptions& options) {
   } catch (const std::exception& error) {
     throw Error(ErrorKind::failed, std::string("OpenEXR: ") + error.what());
   }
+}
+
+const char* openexr_version() {
+  return OPENEXR_VERSION_STRING;
 }
 
 } // namespace levelray

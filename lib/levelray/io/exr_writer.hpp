@@ -19,4 +19,7 @@ struct ExrOptions {
 // nothing tells the time or the machine. Throws Error(failed) for images that OpenEXR refuses.
 std::string encode_exr(const Image& image, const ExrOptions& options);
 
+// The version of the library beneath, e.g. "3.1.5".
+const char* openexr_version();
+
 } // namespace levelray

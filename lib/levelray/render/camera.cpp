@@ -81,8 +81,8 @@ Matrix44d Camera::world_to_ndc() const {
   return world_to_camera() * projection;
 }
 
-CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees,
-                              const Vec3d& up) {
+CameraSettings framing_camera(const SupportFunction& support, const Vec3d& centre, int width, int height,
+                              double fov_degrees, const Vec3d& up) {
   if (!(up.length() > 0) || !is_finite(up)) throw Error(ErrorKind::usage, "camera: --up has no direction");
   CameraSettings settings;
   settings.width = width;
@@ -90,47 +90,49 @@ CameraSettings framing_camera(const Box3d& bounds, int width, int height, double
   settings.fov_degrees = fov_degrees;
   settings.up = up.normalized();
 
-  // Look from the front, 30 degrees to its right and 20 degrees above the horizon.
+  // Look from the front, 30 degrees to its right and 25 degrees above the horizon.
   const int axis = major_axis(settings.up);
   Vec3d front = axis == 2 ? Vec3d(0, -1, 0) : Vec3d(0, 0, 1);
   front = (front - settings.up * front.dot(settings.up)).normalized();
   const Vec3d side = settings.up.cross(front);
-  const double azimuth = std::numbers::pi / 6, elevation = std::numbers::pi / 9;
+  const double azimuth = 30 * std::numbers::pi / 180, elevation = 25 * std::numbers::pi / 180;
   const Vec3d to_eye = (front * std::cos(azimuth) + side * std::sin(azimuth)) * std::cos(elevation) +
                        settings.up * std::sin(elevation);
 
-  const Vec3d centre = bounds.isEmpty() ? Vec3d(0, 0, 0) : bounds.min + (bounds.max - bounds.min) * 0.5;
   settings.target = centre;
   settings.eye = centre + to_eye;
   const Camera view(settings);
 
-  // Of each image axis, the corners (a, z) relative to the centre must satisfy |a - e| <= k (D + z), where e
-  // is the eye's offset, D its distance and k the tangent of the usable half angle. With U = max(a - k z) and
-  // L = min(a + k z), the smallest D is (U - L) / 2k, and e = (U + L) / 2 is feasible for it and any larger
-  // D.
+  // A point at (x, y, z) from the centre, in camera axes, is seen within the usable half angles of tangents k
+  // from distance D when |x| <= k_x (D + z) and |y| <= k_y (D + z): D is the largest of four linear
+  // functions.
   const double margin = 0.95;
-  const double k_vertical = tan_half(fov_degrees) * margin;
-  const double k_horizontal = k_vertical * width / height;
-  const auto fit = [&](const Vec3d& direction, double k, double* offset) {
-    double upper = -INFINITY, lower = INFINITY;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Vec3d p((corner & 1 ? bounds.max : bounds.min).x, (corner & 2 ? bounds.max : bounds.min).y,
-                    (corner & 4 ? bounds.max : bounds.min).z);
-      const double a = (p - centre).dot(direction), z = (p - centre).dot(view.forward());
-      upper = std::max(upper, a - k * z);
-      lower = std::min(lower, a + k * z);
-    }
-    *offset = (upper + lower) / 2;
-    return (upper - lower) / (2 * k);
-  };
-  double right_offset = 0, up_offset = 0, distance = 0;
-  if (!bounds.isEmpty())
-    distance =
-        std::max(fit(view.right(), k_horizontal, &right_offset), fit(view.up(), k_vertical, &up_offset));
-  if (!(distance > 0)) distance = 1;
-  settings.target = centre + view.right() * right_offset + view.up() * up_offset;
-  settings.eye = settings.target + to_eye * distance;
+  const double k_y = tan_half(fov_degrees) * margin, k_x = k_y * width / height;
+  const Vec3d directions[4] = {view.right() / k_x - view.forward(), -view.right() / k_x - view.forward(),
+                               view.up() / k_y - view.forward(), -view.up() / k_y - view.forward()};
+  const std::vector<double> farthest = support(directions);
+  double distance = 0;
+  for (int i = 0; i < 4; ++i)
+    distance = std::max(distance, farthest[static_cast<std::size_t>(i)] - centre.dot(directions[i]));
+  // Rounding of the dot products leaves something of order 1e-16 times the coordinates for a single point.
+  const double least = 1e-12 * centre.length();
+  settings.eye = centre + to_eye * (distance > least ? distance : 1);
   return settings;
+}
+
+CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees,
+                              const Vec3d& up) {
+  if (bounds.isEmpty()) return framing_camera(Box3d(Vec3d(0, 0, 0)), width, height, fov_degrees, up);
+  const SupportFunction support = [&](std::span<const Vec3d> directions) {
+    std::vector<double> largest;
+    for (const Vec3d& d : directions)
+      largest.push_back(Vec3d(d.x > 0 ? bounds.max.x : bounds.min.x, d.y > 0 ? bounds.max.y : bounds.min.y,
+                              d.z > 0 ? bounds.max.z : bounds.min.z)
+                            .dot(d));
+    return largest;
+  };
+  return framing_camera(support, bounds.min + (bounds.max - bounds.min) * 0.5, width, height, fov_degrees,
+                        up);
 }
 
 } // namespace levelray

@@ -8,7 +8,8 @@ namespace levelray {
 
 enum class PixelStatus : std::uint8_t {
   miss,    // nothing; of the other values only the counts are set
-  surface, // the level set
+  surface, // the level set, entered from outside
+  inner,   // the level set, left from inside: the camera stands in the object
   ground   // the ground plane
 };
 

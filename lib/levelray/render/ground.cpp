@@ -1,5 +1,7 @@
 #include "levelray/render/ground.hpp"
 
+#include "levelray/render/surface_extent.hpp"
+
 #include <algorithm>
 
 namespace levelray {
@@ -18,14 +20,15 @@ double Ground::coverage(const Vec3d& point) const {
   return x * x * (3 - 2 * x); // a cubic step: no visible edge at either end
 }
 
-Ground ground_below(const SurfaceExtent& extent, const Vec3d& up) {
+Ground ground_below(const BlockGrid& grid, const Vec3d& up) {
   Ground ground;
   ground.up = up.normalized();
-  ground.height = extent.lowest / up.length();
-  if (extent.bounds.isEmpty()) return ground;
-  const Vec3d middle = extent.bounds.min + (extent.bounds.max - extent.bounds.min) * 0.5;
+  const Box3d bounds = surface_bounds(grid);
+  if (bounds.isEmpty()) return ground;
+  const Vec3d down = -ground.up, middle = bounds.min + bounds.size() * 0.5;
+  ground.height = -surface_support(grid, {&down, 1}).front();
   ground.centre = middle - ground.up * (middle.dot(ground.up) - ground.height);
-  ground.radius = (extent.bounds.max - extent.bounds.min).length() / 2;
+  ground.radius = bounds.size().length() / 2;
   return ground;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "levelray/core/ray.hpp"
-#include "levelray/render/surface_extent.hpp"
+#include "levelray/grid/block_grid.hpp"
 
 #include <optional>
 
@@ -23,6 +23,6 @@ struct Ground {
 };
 
 // The ground below the surface's lowest point.
-Ground ground_below(const SurfaceExtent& extent, const Vec3d& up);
+Ground ground_below(const BlockGrid& grid, const Vec3d& up);
 
 } // namespace levelray

@@ -7,7 +7,9 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <span>
 
 namespace levelray {
 
@@ -25,7 +27,9 @@ int samples_per_side(int samples) {
   return side;
 }
 
-void check(const RenderOptions& options) {
+} // namespace
+
+void check_render_options(const RenderOptions& options) {
   samples_per_side(options.samples);
   if (options.repeat < 1) throw Error(ErrorKind::usage, "--repeat must be at least 1");
   for (const std::string& aov : options.aovs) {
@@ -37,7 +41,10 @@ void check(const RenderOptions& options) {
   for (const DirectionalLight& light : options.lights)
     if (!(std::abs(light.to_light.length() - 1) < 1e-9) || !(light.intensity >= 0))
       throw Error(ErrorKind::usage, "a light needs a unit direction and an intensity >= 0");
+  shading_material(options.shading);
 }
+
+namespace {
 
 // Everything that shading a tile needs, and the sums it leaves.
 struct Shading {
@@ -49,38 +56,64 @@ struct Shading {
   std::atomic<std::uint64_t> shadow_rays{0}, hits{0};
 };
 
+// A pixel of a tile that has something to shade.
+struct Point {
+  std::size_t pixel;
+  Vec3d normal, to_eye, radiance;
+  const Material* material;
+};
+
+// Adds one light to the points of a tile: those that face it and, with shadows, are not hidden from it.
+void add_light(Shading& shading, const DirectionalLight& light, const GBuffer& gbuffer,
+               std::vector<Point>& points) {
+  std::vector<std::size_t> lit;
+  std::vector<Vec3d> gain;
+  std::vector<WorldRay> rays;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& p = points[i];
+    const Vec3d radiance = shade_light(*p.material, p.normal, light.to_light, p.to_eye) * light.intensity;
+    if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) continue;
+    lit.push_back(i);
+    gain.push_back(radiance);
+    if (!shading.options.shadows || !light.casts_shadows) continue;
+    // From the ray's last point that is proven to be outside: no offset, hence no acne and no leak.
+    WorldRay& ray = rays.emplace_back();
+    ray.origin = gbuffer.outside[p.pixel];
+    ray.direction = light.to_light;
+  }
+  const std::unique_ptr<bool[]> hidden(new bool[lit.size()]());
+  if (!rays.empty())
+    any_hits(shading.level_set, rays, shading.options.intersector, std::span(hidden.get(), rays.size()));
+  shading.shadow_rays += rays.size();
+  for (std::size_t i = 0; i < lit.size(); ++i)
+    if (!hidden[i]) points[lit[i]].radiance += gain[i];
+}
+
 // Adds the tile's colours to `rgba` (four channels of the image), weighted.
 void shade_tile(Shading& shading, const Tile& tile, const Vec3d& eye, const GBuffer& gbuffer, float weight,
                 float* const rgba[4]) {
-  std::uint64_t shadow_rays = 0, hits = 0;
+  std::vector<Point> points;
   for (int y = tile.y_begin; y < tile.y_end; ++y)
     for (int x = tile.x_begin; x < tile.x_end; ++x) {
       const std::size_t i = gbuffer.index(x, y);
-      if (gbuffer.status[i] == PixelStatus::miss) continue;
-      const bool on_ground = gbuffer.status[i] == PixelStatus::ground;
-      hits += on_ground ? 0 : 1;
-      const Material& material = on_ground ? shading.ground_material : shading.surface;
-      const double coverage = on_ground ? shading.ground->coverage(gbuffer.point[i]) : 1;
-      const Vec3d normal(gbuffer.normal[i]), to_eye = (eye - gbuffer.point[i]).normalized();
-      Vec3d radiance = material.albedo * ambient_intensity;
-      for (const DirectionalLight& light : shading.lights) {
-        const Vec3d lit = shade_light(material, normal, light.to_light, to_eye) * light.intensity;
-        if (!(lit.x > 0 || lit.y > 0 || lit.z > 0)) continue;
-        if (shading.options.shadows) {
-          // From the ray's last point that is proven to be outside: no offset, hence no acne and no leak.
-          WorldRay ray;
-          ray.origin = gbuffer.outside[i];
-          ray.direction = light.to_light;
-          ++shadow_rays;
-          if (any_hit(shading.level_set, ray, shading.options.intersector)) continue;
-        }
-        radiance += lit;
-      }
-      for (int c = 0; c < 3; ++c) rgba[c][i] += static_cast<float>(radiance[c] * coverage) * weight;
-      rgba[3][i] += static_cast<float>(coverage) * weight;
+      const PixelStatus status = gbuffer.status[i];
+      if (status == PixelStatus::miss) continue;
+      Point& p = points.emplace_back();
+      p.pixel = i;
+      p.material = status == PixelStatus::ground ? &shading.ground_material : &shading.surface;
+      p.normal = Vec3d(gbuffer.normal[i]);
+      if (status == PixelStatus::inner) p.normal = -p.normal; // seen from behind
+      p.to_eye = (eye - gbuffer.point[i]).normalized();
+      p.radiance = p.material->albedo * ambient_intensity;
+      shading.hits += status == PixelStatus::ground ? 0 : 1;
     }
-  shading.shadow_rays += shadow_rays;
-  shading.hits += hits;
+  for (const DirectionalLight& light : shading.lights) add_light(shading, light, gbuffer, points);
+  for (const Point& p : points) {
+    const bool on_ground = gbuffer.status[p.pixel] == PixelStatus::ground;
+    const double coverage = on_ground ? shading.ground->coverage(gbuffer.point[p.pixel]) : 1;
+    for (int c = 0; c < 3; ++c) rgba[c][p.pixel] += static_cast<float>(p.radiance[c] * coverage) * weight;
+    rgba[3][p.pixel] += static_cast<float>(coverage) * weight;
+  }
 }
 
 // Copies the values of an AOV out of the G-buffer.
@@ -124,7 +157,7 @@ std::uint64_t render_bytes(const RenderOptions& options) {
 }
 
 RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) {
-  check(options);
+  check_render_options(options);
   const Camera camera(options.camera);
   const int width = options.camera.width, height = options.camera.height;
   const int side = samples_per_side(options.samples);
@@ -133,7 +166,7 @@ RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) 
   const std::vector<DirectionalLight> lights =
       options.lights.empty() ? three_point_lights(camera) : options.lights;
   std::optional<Ground> ground;
-  if (options.ground) ground = ground_below(surface_extent(grid, options.camera.up), options.camera.up);
+  if (options.ground) ground = ground_below(grid, options.camera.up);
 
   RenderedImage result;
   RenderStats& stats = result.stats;
@@ -161,8 +194,8 @@ RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) 
     const LevelSet level_set(grid);
     stats.prepare_ms.push_back(milliseconds_since(start));
 
-    const Visibility scene{level_set,           camera,          ground ? &*ground : nullptr,
-                           options.intersector, options.normals, is_inside(grid, options.camera.eye)};
+    const Visibility scene{level_set, camera, ground ? &*ground : nullptr, options.intersector,
+                           options.normals};
     Material ground_material;
     ground_material.albedo = Vec3d(0.55);
     Shading shading{level_set,       options,     lights, shading_material(options.shading),

@@ -55,6 +55,10 @@ struct RenderedImage {
 // Error(usage) for illegal options.
 RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options);
 
+// Throws Error(usage) for illegal options but camera, intersector and normals, which are checked where they
+// are used.
+void check_render_options(const RenderOptions& options);
+
 // The memory that rendering takes besides grid and level set, in bytes.
 std::uint64_t render_bytes(const RenderOptions& options);
 

@@ -3,16 +3,18 @@
 
 #include "levelray/grid/block_grid.hpp"
 
+#include <span>
+#include <vector>
+
 namespace levelray {
 
-struct SurfaceExtent {
-  Box3d bounds;      // world units; empty when the grid has no surface
-  double lowest = 0; // the least dot(point, up), world units
-};
+// For each direction d (of any length), the largest dot(p, d) of the points p, in world units, where the
+// surface crosses the edges of its cells; -infinity for a grid without surface. Exact there, because the
+// trilinear interpolant is linear on edges; between edges the surface may bulge further by a fraction of a
+// voxel.
+std::vector<double> surface_support(const BlockGrid& grid, std::span<const Vec3d> directions);
 
-// The extent of the points where the surface crosses the edges of its cells, by linear interpolation along
-// them (exact for the trilinear interpolant, which is linear on edges). Between edges it may bulge further by
-// a fraction of a voxel. `up` need not have unit length.
-SurfaceExtent surface_extent(const BlockGrid& grid, const Vec3d& up);
+// The box of those points; empty for a grid without surface.
+Box3d surface_bounds(const BlockGrid& grid);
 
 } // namespace levelray

@@ -5,7 +5,9 @@
 #include "levelray/render/gbuffer.hpp"
 #include "levelray/render/ground.hpp"
 #include "levelray/render/tiles.hpp"
+#include "levelray/trace/hit_normals.hpp"
 #include "levelray/trace/level_set.hpp"
+#include "levelray/trace/trace.hpp"
 
 #include <string_view>
 
@@ -15,13 +17,9 @@ namespace levelray {
 struct Visibility {
   const LevelSet& level_set;
   const Camera& camera;
-  const Ground* ground; // or null
-  std::string_view intersector, normals;
-  bool eye_inside; // the camera stands in the object: normals are turned towards it
+  const Ground* ground;                  // or null
+  std::string_view intersector, normals; // names of intersect/intersectors.hpp and normal/normals.hpp
 };
-
-// Whether the interpolated field at `eye` (world units) is negative.
-bool is_inside(const BlockGrid& grid, const Vec3d& eye);
 
 // Fills the tile's pixels for rays through (i + x, j + y), x and y in [0,1).
 void trace_tile(const Visibility& scene, const Tile& tile, double x, double y, GBuffer& gbuffer);

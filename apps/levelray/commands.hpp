@@ -1,0 +1,16 @@
+// The subcommands. Each adds itself to the program and, when it was chosen, sets `run` to the work that is to
+// be done; errors leave it as exceptions.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace levelray {
+
+using Work = std::function<void()>;
+
+void add_convert(CLI::App& program, Work& run);
+void add_render(CLI::App& program, Work& run);
+void add_info(CLI::App& program, Work& run);
+
+} // namespace levelray

@@ -1,0 +1,87 @@
+// levelray convert: a mesh to an OpenVDB level set.
+#include "commands.hpp"
+#include "input.hpp"
+#include "levelray/core/error.hpp"
+#include "levelray/core/parallel.hpp"
+#include "levelray/io/output_file.hpp"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+
+namespace levelray {
+
+namespace {
+
+struct Convert {
+  CommonOptions common;
+  InputOptions input;
+  ConversionOptions conversion;
+  std::string output;
+  bool half = false;
+
+  void run() const;
+};
+
+void Convert::run() const {
+  std::vector<std::string> outputs;
+  check_output(output, input.path, {".vdb"}, outputs);
+  if (!common.json.empty() && common.json != "-") check_output(common.json, input.path, {}, outputs);
+  if (input.path != "-" && is_vdb(input.path))
+    throw Error(ErrorKind::usage,
+                printable(input.path, 300) + ": is a level set already; convert takes a mesh");
+
+  const ThreadLimit threads(common.threads);
+  const Stopwatch total;
+  Progress progress(common.quiet);
+  const LoadedGrid loaded = convert_mesh(input, conversion, common, progress);
+
+  const Stopwatch write;
+  VdbWriteOptions options;
+  options.half = half;
+  options.creator = "levelray " LEVELRAY_VERSION;
+  write_file_atomically(output, [&](const std::string& path) { write_vdb(path, loaded.grid, options); });
+  const double write_ms = write.ms();
+
+  if (common.talks())
+    print(fmt::format("wrote {}: grid \"{}\", {} active samples, {}, {}\n", output, loaded.grid.name,
+                      with_commas(loaded.grid.active_sample_count()),
+                      bytes_text(std::filesystem::file_size(output)), duration_text(total.ms() / 1000)));
+  const ConvertReport& report = *loaded.converted;
+  write_json(common, {{"input", mesh_json(*loaded.mesh)},
+                      {"sign",
+                       {{"method", sign_method_names()[static_cast<std::size_t>(report.sign)]},
+                        {"reason", report.sign_reason}}},
+                      {"grid", grid_json(loaded.grid)},
+                      {"ms",
+                       {{"read", loaded.read_ms},
+                        {"distance", report.distance_ms},
+                        {"sign", report.sign_ms},
+                        {"write", write_ms},
+                        {"total", total.ms()}}},
+                      {"warnings", loaded.warnings}});
+}
+
+} // namespace
+
+void add_convert(CLI::App& program, Work& run) {
+  auto options = std::make_shared<Convert>();
+  CLI::App& command = *program.add_subcommand("convert", "Convert a mesh to an OpenVDB level set");
+  command.footer(R"(Examples:
+  levelray convert statue.ply statue.vdb
+  levelray convert statue.ply statue.vdb --resolution 1024
+  levelray convert part.stl part.vdb --units mm --voxel 0.5mm --band 4vx
+  levelray convert scan.obj scan.vdb --sign winding --json report.json
+
+Converts a mesh (OBJ, PLY, STL, OFF) to an OpenVDB level set: exact distances within a narrow band.)");
+  command.add_option("IN", options->input.path, "The mesh; -: standard input (needs --format)")->required();
+  command.add_option("OUT", options->output, "The .vdb to write")->required();
+  options->conversion.add_to(command);
+  command.add_flag("--half", options->half, "Store 16-bit floats: half the size, values to 11 bits")
+      ->group("Conversion");
+  options->input.add_to(command);
+  options->common.add_to(command);
+  command.callback([options, &run] { run = [options] { options->run(); }; });
+}
+
+} // namespace levelray

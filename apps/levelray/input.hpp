@@ -1,0 +1,65 @@
+// What a subcommand reads: a mesh and what became of it, or a level set.
+#pragma once
+
+#include "console.hpp"
+#include "levelray/convert/mesh_to_grid.hpp"
+#include "options.hpp"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+namespace levelray {
+
+using Json = nlohmann::ordered_json; // keys in the order they are documented
+
+// Measures from its construction.
+class Stopwatch {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+struct LoadedMesh {
+  std::string format;
+  PreparedMesh prepared;
+  std::vector<std::string> warnings;
+  double read_ms = 0; // file to prepared mesh
+};
+
+// Reads and prepares a mesh; with --strict, throws Error(bad_input) for one that has flaws.
+LoadedMesh load_mesh(const InputOptions& options);
+
+struct LoadedGrid {
+  BlockGrid grid;
+  std::optional<MeshReport> mesh;         // when it was converted
+  std::optional<ConvertReport> converted; // when it was converted
+  std::vector<std::string> warnings;
+  double read_ms = 0;
+};
+
+// Whether the path is an OpenVDB file, by its extension or its first bytes.
+bool is_vdb(const std::string& path);
+
+// Converts a mesh, telling about it: what it is, what the conversion will take, how it was signed. Warnings
+// are printed once the work has succeeded.
+LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conversion,
+                        const CommonOptions& common, Progress& progress);
+
+// Reads a level set, or converts a mesh as above.
+LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& conversion,
+                     const CommonOptions& common, Progress& progress);
+
+// "435,545 vertices, 871,306 triangles, closed, manifold, outward; size 0.9 x 0.63 x 0.4"
+std::string describe_mesh(const MeshReport& report, const std::string& units);
+
+Json mesh_json(const MeshReport& report); // the `input` of convert
+Json grid_json(const BlockGrid& grid);    // {voxel_size, dims, blocks, active_samples, bytes}
+
+// Writes to --json's file or standard output, if asked.
+void write_json(const CommonOptions& common, const Json& json);
+
+} // namespace levelray

@@ -1,0 +1,61 @@
+// Groups of options that several subcommands share.
+#pragma once
+
+#include "levelray/convert/mesh_to_grid.hpp"
+#include "levelray/io/mesh_reader.hpp"
+#include "levelray/vdb/vdb_file.hpp"
+
+#include "lengths.hpp"
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace levelray {
+
+// Of every subcommand.
+struct CommonOptions {
+  int threads = 0; // 0: all
+  bool quiet = false;
+  std::string json; // a path, "-" for standard output, or empty
+
+  void add_to(CLI::App& command);
+  // Results for people go to standard output, unless JSON does or nothing shall.
+  bool talks() const { return !quiet && json != "-"; }
+};
+
+// How a mesh or a .vdb is read.
+struct InputOptions {
+  std::string path, format, units, grid, max_memory;
+  bool drop_bad = false, salvage = false, trust_orientation = false, strict = false, trust_input = false;
+
+  void add_to(CLI::App& command);
+  MeshReadOptions mesh_options() const;
+  VdbReadOptions vdb_options() const;
+  // In bytes: as given, or four fifths of the machine's memory.
+  std::uint64_t memory_limit() const;
+};
+
+// How a mesh becomes a grid.
+struct ConversionOptions {
+  std::string voxel, band = "3vx", sign = "auto";
+  int resolution = 256;
+  bool resolution_given = false;
+
+  void add_to(CLI::App& command);
+  // Checks what can be checked without the mesh: throws Error(usage).
+  void check() const;
+  // In the units of a mesh with these bounds.
+  ConvertOptions resolve(const Box3d& bounds, const InputOptions& input) const;
+};
+
+// Throws Error(usage) for an output that cannot be meant: its folder is missing, it is the input, or another
+// output of the same run, or its extension is none of `extensions` (".exr"; empty: any). Throws
+// Error(cannot_write) when it cannot be created.
+void check_output(const std::string& path, const std::string& input,
+                  const std::vector<std::string>& extensions, std::vector<std::string>& outputs_so_far);
+
+// The extension in lower case, with its dot.
+std::string extension_of(const std::string& path);
+
+} // namespace levelray

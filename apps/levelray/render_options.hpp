@@ -1,0 +1,29 @@
+// The options of `levelray render` that make the picture.
+#pragma once
+
+#include "input.hpp"
+#include "levelray/render/render_image.hpp"
+
+namespace levelray {
+
+struct PictureOptions {
+  std::vector<std::string> outputs, lights;
+  std::string size = "512x512", eye, target, up = "0,1,0", intersector = RenderOptions().intersector,
+              normals = RenderOptions().normals, shading = "phong", aovs;
+  double fov = 45;
+  bool shadows = false, ground = false;
+  int samples = 1, repeat = 1;
+
+  void add_to(CLI::App& command);
+  // Throws Error(usage) for everything that can be told without the grid.
+  void check() const { resolve_without_grid(); }
+  // With a camera: the given one, completed by framing the grid's surface.
+  RenderOptions resolve(const BlockGrid& grid) const;
+  // Every option in force.
+  Json json(const RenderOptions& resolved, int threads) const;
+
+ private:
+  RenderOptions resolve_without_grid() const;
+};
+
+} // namespace levelray

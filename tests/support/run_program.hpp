@@ -1,0 +1,96 @@
+// Runs the levelray program as a user does, and keeps what it said.
+#pragma once
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <functional>
+#include <poll.h>
+#include <stdexcept>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace levelray::test {
+
+struct RunResult {
+  int code = -1; // exit code, or 128 + the signal that ended it
+  bool signalled = false;
+  std::string out, err;
+  double seconds_after_signal = 0; // from the last signal sent to the end
+};
+
+struct RunOptions {
+  std::function<void()> in_child;              // between fork and exec: limits, closed streams
+  std::vector<std::pair<double, int>> signals; // (seconds after the start, signal)
+};
+
+// Runs LEVELRAY_PROGRAM with these arguments; standard input is empty.
+inline RunResult run_program(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
+  int out[2], err[2];
+  if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("no pipes");
+  std::vector<char*> argv{const_cast<char*>("levelray")};
+  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("no process");
+  if (child == 0) {
+    ::dup2(::open("/dev/null", O_RDONLY), 0);
+    ::dup2(out[1], 1);
+    ::dup2(err[1], 2);
+    if (options.in_child) options.in_child();
+    ::execv(LEVELRAY_PROGRAM, argv.data());
+    ::_exit(127);
+  }
+  ::close(out[1]);
+  ::close(err[1]);
+
+  RunResult result;
+  std::size_t next_signal = 0;
+  double last_signal = 0;
+  pollfd streams[2] = {{out[0], POLLIN, 0}, {err[0], POLLIN, 0}};
+  for (int open = 2; open > 0;) {
+    int wait_ms = -1;
+    if (next_signal < options.signals.size()) {
+      const double left = options.signals[next_signal].first - seconds();
+      if (left <= 0) {
+        ::kill(child, options.signals[next_signal++].second);
+        last_signal = seconds();
+        continue;
+      }
+      wait_ms = static_cast<int>(left * 1000) + 1;
+    }
+    if (::poll(streams, 2, wait_ms) < 0 && errno != EINTR) break;
+    for (int i = 0; i < 2; ++i) {
+      if (streams[i].fd < 0 || streams[i].revents == 0) continue;
+      char bytes[4096];
+      const ssize_t n = ::read(streams[i].fd, bytes, sizeof bytes);
+      if (n > 0)
+        (i == 0 ? result.out : result.err).append(bytes, static_cast<std::size_t>(n));
+      else {
+        streams[i].fd = -1;
+        --open;
+      }
+    }
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  result.seconds_after_signal = seconds() - last_signal;
+  ::close(out[0]);
+  ::close(err[0]);
+  result.signalled = WIFSIGNALED(status);
+  result.code = result.signalled ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+  return result;
+}
+
+} // namespace levelray::test
