@@ -99,6 +99,7 @@ bool PolygonTriangulator::clip_ears(std::vector<Triangle>& triangles) {
   while (left > 3) {
     if (work_ > next_look) {
       check_cancel();
+      if (work_ > max_work) break;
       next_look = work_ + (1 << 20);
     }
     if (!is_ear(b, strict)) {

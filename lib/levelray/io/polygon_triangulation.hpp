@@ -31,7 +31,9 @@ class PolygonTriangulator {
   // as the polygon is. A convex polygon gives the fan around its first corner.
   Result triangulate(const std::vector<Vec3d>& points, std::vector<Triangle>& triangles);
 
-  // Tests of a corner against an ear so far: grows with the square of a polygon's corners at worst.
+  // Tests of a corner against an ear so far: grows with the square of a polygon's corners at worst. Beyond
+  // max_work, some seconds, polygons become fans, and the caller should refuse the mesh.
+  static constexpr std::uint64_t max_work = 1'000'000'000;
   std::uint64_t work() const noexcept { return work_; }
 
  private:

@@ -14,10 +14,6 @@ namespace {
 constexpr std::uint32_t look_interval = 1 << 14;
 constexpr std::uint64_t max_vertices = std::numeric_limits<std::uint32_t>::max();
 
-// Tests that triangulation may take in one file: some seconds. Only polygons of ten thousands of concave
-// corners come near.
-constexpr std::uint64_t max_triangulation_work = 1'000'000'000;
-
 // Coordinates written with six digits are off by up to 5e-6 of their size, and so is a corner from the plane
 // it was meant to be in; half of that again comes from the plane's own corners. More than 1e-5 is bent.
 constexpr double planar_tolerance = 1e-5;
@@ -125,7 +121,7 @@ void SoupBuilder::add_known_polygon(const char* at) {
     magnitude = std::max({magnitude, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
   const PolygonTriangulator::Result result = triangulator_.triangulate(points_, pieces_);
-  if (triangulator_.work() > max_triangulation_work)
+  if (triangulator_.work() > PolygonTriangulator::max_work)
     source_.fail_limit("its polygons have too many corners to triangulate; triangulate the mesh before");
   if (!result.simple) not_simple_.add(at);
   if (result.deviation > planar_tolerance * magnitude) {
