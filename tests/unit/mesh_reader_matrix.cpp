@@ -126,7 +126,9 @@ TEST_CASE("row 7: points without faces are counted") {
   std::string points;
   for (int i = 0; i < 12; ++i) points += fmt::format("v {} 0 1\n", i);
   CHECK_THAT(refusal(points, "x.obj"), StartsWith("x.obj: 12 vertices, no faces; "));
-  CHECK_THAT(refusal(points + "p 1 2\n", "x.obj"), StartsWith("x.obj: 12 vertices, no faces; "));
+  CHECK(refusal(points + "p 1 2\n", "x.obj") ==
+        "x.obj: 12 vertices, no faces; line and point elements make no surface to convert");
+  CHECK_THAT(refusal(points + "cstype bezier\n", "x.obj"), Contains("free-form curves and surfaces"));
   CHECK_THAT(refusal(ply_text({tetrahedron().vertices, {}}), "x.ply"),
              StartsWith("x.ply: 4 vertices, no faces; "));
   CHECK_THAT(refusal(off_text({tetrahedron().vertices, {}}), "x.off"),

@@ -37,6 +37,8 @@ class ObjReader {
       cursor_.skip_space();
       if (!cursor_.at_end()) read_line();
     }
+    if (lines_.number) builder_.set_other_content("line and point elements");
+    if (free_form_.number) builder_.set_other_content("free-form curves and surfaces (not supported)");
     if (lines_.number)
       remark(lines_, "line or point element", "line and point elements", "they bound no volume");
     if (free_form_.number)

@@ -220,8 +220,8 @@ MeshFile SoupBuilder::finish(const std::string& format, const std::string& forma
     if (short_faces_.number + repeated_corners_.number != 0)
       source_.fail(
           fmt::format("{} vertices, but no face has three different corners", mesh_.vertices.size()));
-    source_.fail(
-        fmt::format("{} vertices, no faces; a point cloud has no surface to convert", mesh_.vertices.size()));
+    source_.fail(fmt::format("{} vertices, no faces; {} no surface to convert", mesh_.vertices.size(),
+                             other_content_.empty() ? "a point cloud has" : other_content_ + " make"));
   }
   if (bad_vertices_.number != 0) drop_bad_vertices();
   write_remarks();

@@ -37,6 +37,8 @@ class SoupBuilder {
 
   // A remark for the user: one line.
   void warn(const std::string& text) { warnings_.push_back(text); }
+  // What the file holds instead, for the message when there are no faces: "12 line elements".
+  void set_other_content(const std::string& text) { other_content_ = text; }
   // The file ends too early: throws, or with options.salvage remarks that the rest is used.
   void truncated(const char* at, const std::string& reason);
 
@@ -69,6 +71,7 @@ class SoupBuilder {
   const MeshReadOptions& options_;
   TriangleMesh mesh_;
   std::vector<std::string> warnings_;
+  std::string other_content_;
   std::vector<Deferred> deferred_;
   std::vector<std::uint64_t> deferred_corners_;
   std::uint32_t until_look_ = 0;
