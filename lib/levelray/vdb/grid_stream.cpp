@@ -30,7 +30,7 @@ class Out {
   }
   template <class Vector>
   void array(const Vector& v) {
-    write_(v.data(), v.size() * sizeof v[0]);
+    if (!v.empty()) write_(v.data(), v.size() * sizeof v[0]);
   }
 
  private:
@@ -68,7 +68,7 @@ class In {
   template <class Vector>
   void array(Vector& v, std::uint64_t size) {
     v.resize(size);
-    read_(v.data(), size * sizeof v[0]);
+    if (size) read_(v.data(), size * sizeof v[0]);
   }
 
  private:
