@@ -18,16 +18,12 @@ struct NodeStorage {
   std::uint64_t first_block = 0;
 };
 
-std::uint64_t block_sides(const NodeSides& sides, std::size_t block) {
-  return sides.uniform ? (sides.inside ? ~std::uint64_t{0} : 0) : sides.blocks[block];
-}
-
 // The sides of the block at block coordinates `block` (any node); beyond the table all is outside.
 std::uint64_t sides_at(const Band& band, const std::vector<NodeSides>& sides, const Vec3i& block) {
   const Vec3i node(block.x >> 2, block.y >> 2, block.z >> 2);
   if (!band.box.contains(node)) return 0;
-  return block_sides(sides[band.box.index(node)],
-                     static_cast<std::size_t>((block.x & 3) | (block.y & 3) << 2 | (block.z & 3) << 4));
+  return sides[band.box.index(node)].block(
+      static_cast<std::size_t>((block.x & 3) | (block.y & 3) << 2 | (block.z & 3) << 4));
 }
 
 // Whether some cell of the block may be crossed: samples of its own or of the seven upper neighbours differ
@@ -66,10 +62,10 @@ BlockGrid assemble_grid(Band& band, const std::vector<NodeSides>& sides, const G
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const Vec3i coord = band.box.coord(n);
-      bool alone = sides[n].uniform && band.node_at[n] == Band::untouched;
+      bool alone = sides[n].uniform() && band.node_at[n] == Band::untouched;
       for (int i = 1; i < 8 && alone; ++i) {
         const Vec3i next = coord + Vec3i(i & 1, i >> 1 & 1, i >> 2);
-        const bool same = band.box.contains(next) ? sides[band.box.index(next)].uniform &&
+        const bool same = band.box.contains(next) ? sides[band.box.index(next)].uniform() &&
                                                         sides[band.box.index(next)].inside == sides[n].inside
                                                   : !sides[n].inside;
         alone = same;
@@ -87,8 +83,7 @@ BlockGrid assemble_grid(Band& band, const std::vector<NodeSides>& sides, const G
         const bool store =
             (distance && mask_below(distance, half_width)) || has_crossed_cell(band, sides, block);
         storage[n].stored |= std::uint64_t{store} << b;
-        storage[n].inside |= std::uint64_t{!store && block_sides(sides[n], static_cast<std::size_t>(b)) != 0}
-                             << b;
+        storage[n].inside |= std::uint64_t{!store && sides[n].block(static_cast<std::size_t>(b)) != 0} << b;
       }
     }
   });
@@ -122,7 +117,7 @@ BlockGrid assemble_grid(Band& band, const std::vector<NodeSides>& sides, const G
       for (std::uint64_t rest = storage[n].stored; rest; rest &= rest - 1, ++index) {
         const int b = std::countr_zero(rest);
         const float* distance = node ? node->block_distance(b) : nullptr;
-        const std::uint64_t inside = block_sides(sides[n], static_cast<std::size_t>(b));
+        const std::uint64_t inside = sides[n].block(static_cast<std::size_t>(b));
         const std::uint64_t active = distance ? mask_below(distance, half_width) : 0;
         float* out = &grid.values[index * samples_per_block];
         for (int s = 0; s < samples_per_block; ++s) {

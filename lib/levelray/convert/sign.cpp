@@ -71,7 +71,7 @@ NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWin
       sides.inside = inside(first_id);
       return sides;
     }
-    sides.uniform = false;
+    sides.blocks.assign(64, 0);
     for (std::size_t block = 0; block < 64; ++block)
       for (const BlockComponent& c : node->side(static_cast<int>(block)).components)
         if (inside(first_id + c.node_component)) sides.blocks[block] |= c.samples;
@@ -96,7 +96,7 @@ NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWin
     return sides;
   }
 
-  sides.uniform = false;
+  sides.blocks.assign(64, 0);
   for (std::size_t block = 0; block < 64; ++block) {
     const BlockSide side = node ? node->side(static_cast<int>(block)) : BlockSide{nullptr, {&whole, 1}};
     const int b = static_cast<int>(block);

@@ -5,15 +5,19 @@
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/convert/regions.hpp"
 
-#include <array>
+#include <vector>
 
 namespace levelray {
 
 // The sides of a node's samples: uniform, or one mask per block (bit set: inside).
 struct NodeSides {
-  bool uniform = true;
-  bool inside = false;                    // when uniform
-  std::array<std::uint64_t, 64> blocks{}; // when not
+  bool inside = false;               // when uniform
+  std::vector<std::uint64_t> blocks; // 64 masks, or empty: uniform
+
+  bool uniform() const { return blocks.empty(); }
+  std::uint64_t block(std::size_t b) const {
+    return uniform() ? (inside ? ~std::uint64_t{0} : 0) : blocks[b];
+  }
 };
 
 // Which lattice-edge counting a method needs.
