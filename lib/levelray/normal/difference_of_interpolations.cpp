@@ -1,7 +1,5 @@
 #include "levelray/normal/difference_of_interpolations.hpp"
 
-#include "levelray/normal/neighbourhood.hpp"
-
 namespace levelray {
 
 namespace {
@@ -25,8 +23,7 @@ double interpolate(const Neighbourhood& f, const double (&p)[3]) {
 
 } // namespace
 
-Vec3d DifferenceOfInterpolations::gradient(const BlockGrid& grid, const CellPosition& at) {
-  const Neighbourhood f(grid, at.cell);
+Vec3d DifferenceOfInterpolations::gradient(const Neighbourhood& f, const CellPosition& at) {
   Vec3d gradient;
   for (int a = 0; a < 3; ++a) {
     double below[3] = {at.local[0], at.local[1], at.local[2]},

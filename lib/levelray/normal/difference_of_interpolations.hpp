@@ -10,6 +10,7 @@
 #pragma once
 
 #include "levelray/normal/cell_position.hpp"
+#include "levelray/normal/neighbourhood.hpp"
 
 #include <string_view>
 
@@ -20,7 +21,7 @@ struct DifferenceOfInterpolations {
   static constexpr std::string_view source = "Jamriska 2010, section 5";
   static constexpr double offset_voxels = 0.5;
 
-  static Vec3d gradient(const BlockGrid& grid, const CellPosition& at);
+  static Vec3d gradient(const Neighbourhood& f, const CellPosition& at);
 };
 
 } // namespace levelray

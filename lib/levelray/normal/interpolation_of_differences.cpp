@@ -1,11 +1,8 @@
 #include "levelray/normal/interpolation_of_differences.hpp"
 
-#include "levelray/normal/neighbourhood.hpp"
-
 namespace levelray {
 
-Vec3d InterpolationOfDifferences::gradient(const BlockGrid& grid, const CellPosition& at) {
-  const Neighbourhood f(grid, at.cell);
+Vec3d InterpolationOfDifferences::gradient(const Neighbourhood& f, const CellPosition& at) {
   // Float is plenty for a direction: 2^-24 of the samples over a voxel.
   float w[3][2];
   for (int a = 0; a < 3; ++a) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "levelray/normal/cell_position.hpp"
+#include "levelray/normal/neighbourhood.hpp"
 
 #include <string_view>
 
@@ -12,7 +13,7 @@ struct InterpolationOfDifferences {
   static constexpr std::string_view name = "interpolation-of-differences";
   static constexpr std::string_view source = "Jamriska 2010, section 5";
 
-  static Vec3d gradient(const BlockGrid& grid, const CellPosition& at);
+  static Vec3d gradient(const Neighbourhood& f, const CellPosition& at);
 };
 
 } // namespace levelray

@@ -16,7 +16,7 @@ using NormalSchemes = std::tuple<InterpolationOfDifferences, DifferenceOfInterpo
 // The unit normal of the scheme, towards positive values. Where its gradient is zero or not finite the
 // analytic one is taken, and where that is too (all samples around are equal), +z.
 template <class Scheme>
-Vec3d unit_normal(const BlockGrid& grid, const CellPosition& at) {
+Vec3d unit_normal(const Neighbourhood& samples, const CellPosition& at) {
   const auto normalized = [](const Vec3d& g, Vec3d& unit) {
     const double square = g.dot(g);
     if (!(square > 1e-250 && square < 1e250)) { // zero, NaN, or of a grid with extreme units
@@ -30,8 +30,8 @@ Vec3d unit_normal(const BlockGrid& grid, const CellPosition& at) {
     return true;
   };
   Vec3d unit;
-  if (normalized(Scheme::gradient(grid, at), unit)) return unit;
-  if (normalized(AnalyticNormal::gradient(grid, at), unit)) return unit;
+  if (normalized(Scheme::gradient(samples, at), unit)) return unit;
+  if (normalized(AnalyticNormal::gradient(samples, at), unit)) return unit;
   return Vec3d(0, 0, 1);
 }
 

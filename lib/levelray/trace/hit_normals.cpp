@@ -28,10 +28,21 @@ void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std:
   const Vec3d origin = grid.transform.origin;
   const double per_voxel = 1 / grid.transform.voxel_size;
   const auto work = [&]<class Scheme>(Scheme) {
-    for (std::size_t i = 0; i < hits.size(); ++i)
-      normals[i] = hits[i]
-                       ? Vec3f(unit_normal<Scheme>(grid, cell_position(origin, per_voxel, rays[i], hits[i])))
-                       : Vec3f(0, 0, 0);
+    // In batches: all samples are asked for before the first are used.
+    constexpr std::size_t batch = 32;
+    Neighbourhood samples[batch];
+    for (std::size_t first = 0; first < hits.size(); first += batch) {
+      const std::size_t last = std::min(first + batch, hits.size());
+      for (std::size_t i = first; i < last; ++i) {
+        if (!hits[i]) continue;
+        samples[i - first] = Neighbourhood(grid, hits[i].cell);
+        samples[i - first].prefetch();
+      }
+      for (std::size_t i = first; i < last; ++i)
+        normals[i] = hits[i] ? Vec3f(unit_normal<Scheme>(samples[i - first],
+                                                         cell_position(origin, per_voxel, rays[i], hits[i])))
+                             : Vec3f(0, 0, 0);
+    }
   };
   if (visit_method<NormalSchemes>(scheme, work)) return;
   std::string names;

@@ -53,12 +53,11 @@ void for_intersector(std::string_view name, Work&& work) {
 
 } // namespace
 
-template <class Intersector>
-Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
-  Hit hit;
-  RayFrame frame;
-  if (!enter_box(level_set.surface(), level_set.grid().transform, ray, frame)) return hit;
+namespace {
 
+template <class Intersector>
+Hit trace_frame(const LevelSet& level_set, const RayFrame& frame) {
+  Hit hit;
   StartingSide side(frame);
   WalkCounts walked;
   double proven = 0; // s of the last point known to lie on the starting side
@@ -79,6 +78,16 @@ Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
   return hit;
 }
 
+} // namespace
+
+template <class Intersector>
+Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
+  RayFrame frame;
+  return enter_box(level_set.surface(), level_set.grid().transform, ray, frame)
+             ? trace_frame<Intersector>(level_set, frame)
+             : Hit{};
+}
+
 template <class Intersector>
 bool trace_any(const LevelSet& level_set, const WorldRay& ray, RayCounts& counts) {
   RayFrame frame;
@@ -97,7 +106,18 @@ void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std
                   std::span<Hit> hits) {
   assert(rays.size() == hits.size());
   for_intersector(intersector, [&]<class Intersector>(Intersector) {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = trace_closest<Intersector>(level_set, rays[i]);
+    // In batches: the frames do not depend on each other, so computing them side by side hides their
+    // divisions.
+    constexpr std::size_t batch = 32;
+    RayFrame frames[batch];
+    bool entered[batch];
+    for (std::size_t first = 0; first < rays.size(); first += batch) {
+      const std::size_t count = std::min(batch, rays.size() - first);
+      for (std::size_t i = 0; i < count; ++i)
+        entered[i] = enter_box(level_set.surface(), level_set.grid().transform, rays[first + i], frames[i]);
+      for (std::size_t i = 0; i < count; ++i)
+        hits[first + i] = entered[i] ? trace_frame<Intersector>(level_set, frames[i]) : Hit{};
+    }
   });
 }
 
