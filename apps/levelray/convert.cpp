@@ -27,7 +27,7 @@ void Convert::run() const {
   std::vector<std::string> outputs;
   check_output(output, input.path, {".vdb"}, outputs);
   if (!common.json.empty() && common.json != "-") check_output(common.json, input.path, {}, outputs);
-  if (input.path != "-" && is_vdb(input.path))
+  if (std::filesystem::exists(input.path) && is_vdb(input.path))
     throw Error(ErrorKind::usage,
                 printable(input.path, 300) + ": is a level set already; convert takes a mesh");
 

@@ -4,6 +4,7 @@
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/output_file.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 
@@ -41,10 +42,11 @@ void announce(const InputOptions& input, const ConvertOptions& options, const Co
 
 bool is_vdb(const std::string& path) {
   if (extension_of(path) == ".vdb") return true;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return false; // to look into a pipe is to wait for it
   // OpenVDB's magic number, a 64-bit little-endian integer (openvdb/version.h, OPENVDB_MAGIC).
   char first[8] = {};
-  std::ifstream file;
-  if (path != "-") file.open(path, std::ios::binary);
+  std::ifstream file(path, std::ios::binary);
   return file.read(first, 8) && std::string_view(first, 8) == std::string_view(" BDV\0\0\0\0", 8);
 }
 

@@ -78,7 +78,13 @@ void check_subcommand(const CLI::App& program, int argc, char** argv) {
   if (argc < 2)
     throw Error(ErrorKind::usage, "a subcommand is missing: " + join(names) + "; see levelray --help");
   const std::string typed = argv[1];
-  if (!typed.starts_with("-")) find_name("subcommand", typed, names);
+  if (!typed.starts_with("-")) {
+    find_name("subcommand", typed, names);
+  } else if (const auto own = option_names(program);
+             typed != "-h" && std::find(own.begin(), own.end(), typed) == own.end()) {
+    throw Error(ErrorKind::usage, "unknown option " + printable(typed, 100) + suggestion(typed, own) +
+                                      "; a subcommand comes first: " + join(names));
+  }
 }
 
 void run(int argc, char** argv) {

@@ -45,7 +45,8 @@ void InputOptions::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--max-memory", max_memory,
-                  "Refuse work that needs more, e.g. 8GiB (exit 5); default: 80% of the machine's memory")
+                  "Refuse work that needs more, e.g. 8GiB (exit 5); 0: no limit; default: 80% of the "
+                  "machine's memory")
       ->type_name("SIZE")
       ->group(group);
 }
@@ -68,7 +69,11 @@ VdbReadOptions InputOptions::vdb_options() const {
 }
 
 std::uint64_t InputOptions::memory_limit() const {
-  if (!max_memory.empty()) return parse_bytes("--max-memory", max_memory);
+  constexpr std::uint64_t unlimited = std::uint64_t{1} << 62; // leaves room for sums
+  if (!max_memory.empty()) {
+    const std::uint64_t limit = parse_bytes("--max-memory", max_memory);
+    return limit > 0 ? limit : unlimited;
+  }
   const long pages = ::sysconf(_SC_PHYS_PAGES), page_size = ::sysconf(_SC_PAGESIZE);
   if (pages <= 0 || page_size <= 0) return std::uint64_t{8} << 30;
   return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_size) / 5 * 4;

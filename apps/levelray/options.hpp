@@ -32,7 +32,7 @@ struct InputOptions {
   void add_to(CLI::App& command);
   MeshReadOptions mesh_options() const;
   VdbReadOptions vdb_options() const;
-  // In bytes: as given, or four fifths of the machine's memory.
+  // In bytes: as given (0: no limit, a number beyond all machines), or four fifths of the machine's memory.
   std::uint64_t memory_limit() const;
 };
 
