@@ -2,15 +2,20 @@
 //
 // LEVELRAY_REFERENCE_RAYS sets the number of rays over all shapes (default 400,000; the full run is 10
 // million).
+#include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/io/mesh_reader.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "support/catch.hpp"
 #include "support/reference_tracer.hpp"
+#include "support/study_scene.hpp"
 #include "support/trace_fixtures.hpp"
 
 #include <atomic>
 #include <cstdlib>
+#include <filesystem>
 #include <mutex>
+#include <optional>
 
 using namespace levelray;
 using namespace levelray::test;
@@ -70,6 +75,21 @@ void check_ray(const LevelSet& level_set, const ReferenceTracer& reference, cons
   if (hit.t_outside > hit.t || reference.closest(cut(ray, hit.t_outside)).closest < -doubt) ++tally.unproven;
 }
 
+// The Stanford bunny, 128 voxels of size 1 along its longest side: as large as the other shapes.
+std::optional<BlockGrid> bunny_grid() {
+  const std::filesystem::path path =
+      std::filesystem::path(LEVELRAY_TESTDATA) / "classic/stanford-bunny-closed.obj";
+  if (!std::filesystem::exists(path)) {
+    WARN("the bunny is not tested: no test data at " << path.string());
+    return std::nullopt;
+  }
+  TriangleMesh mesh = centred_unit_mesh(read_mesh(path.string()).mesh);
+  for (Vec3d& v : mesh.vertices) v *= 128;
+  ConvertOptions options;
+  options.voxel_size = 1;
+  return mesh_to_grid(prepare_mesh(mesh), options).grid;
+}
+
 std::uint64_t ray_count() {
   const char* text = std::getenv("LEVELRAY_REFERENCE_RAYS");
   return text ? std::strtoull(text, nullptr, 10) : 400000;
@@ -78,11 +98,12 @@ std::uint64_t ray_count() {
 } // namespace
 
 TEST_CASE("exact loses no hit and invents none against a reference in long double") {
-  const Shape shapes[] = {{"sphere of radius 20", sphere_grid(20)},
-                          {"torus with a tube of radius 1", torus_grid(18, 1)},
-                          {"tilted plate 0.8 voxel thick", slab_grid(0.8)},
-                          {"gyroid", gyroid_grid()}};
-  const std::uint64_t per_shape = ray_count() / std::size(shapes);
+  std::vector<Shape> shapes{{"sphere of radius 20", sphere_grid(20)},
+                            {"torus with a tube of radius 1", torus_grid(18, 1)},
+                            {"tilted plate 0.8 voxel thick", slab_grid(0.8)},
+                            {"gyroid", gyroid_grid()}};
+  if (std::optional<BlockGrid> bunny = bunny_grid()) shapes.push_back({"bunny", std::move(*bunny)});
+  const std::uint64_t per_shape = ray_count() / shapes.size();
   for (const Shape& shape : shapes) {
     const LevelSet level_set(shape.grid);
     const ReferenceTracer reference(shape.grid);
