@@ -1,7 +1,7 @@
 // Files that cannot be used: exit 3 (5 over a limit), one line of at most 500 bytes, no output file. The
 // readers' own tests know the messages; this is about what the program makes of them.
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
+#include "support/mesh_files.hpp"
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
 // Signals, full disks, closed streams: an exit code that tells, and no half file.
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
+#include "support/mesh_files.hpp"
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,5 +1,5 @@
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
+#include "support/mesh_files.hpp"
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
 // Wrong usage: exit 2, one line on standard error, nothing on standard output, no file.
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
+#include "support/mesh_files.hpp"
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 

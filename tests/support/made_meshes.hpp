@@ -1,45 +1,80 @@
-// Small mesh files for tests of the program.
+// Small meshes that tests build by hand.
 #pragma once
 
+#include "levelray/mesh/triangle_mesh.hpp"
+
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <string>
 
-namespace levelray::test {
+namespace levelray::made {
 
-inline void write_text(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
+inline TriangleMesh tetrahedron() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 }
 
-// A closed, outward box from (0,0,0) to (x,y,z), of 12 triangles.
-inline std::string box_obj(double x, double y, double z) {
-  std::string text;
-  for (int c = 0; c < 8; ++c)
-    text += "v " + std::to_string(c & 1 ? x : 0) + " " + std::to_string(c & 2 ? y : 0) + " " +
-            std::to_string(c & 4 ? z : 0) + "\n";
-  return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+// Outward box; the faces' two triangles each in the order -x +x -y +y -z +z.
+inline TriangleMesh box(const Vec3d& min = Vec3d(0), const Vec3d& max = Vec3d(1)) {
+  TriangleMesh mesh;
+  for (int i = 0; i < 8; ++i)
+    mesh.vertices.emplace_back(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z);
+  mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  return mesh;
 }
 
-// A closed, outward ball of radius 1 around the origin, of 2 n^2 quads less the poles.
-inline std::string ball_obj(int n) {
-  std::string text = "v 0 0 1\n";
-  for (int i = 1; i < n; ++i)
-    for (int j = 0; j < 2 * n; ++j) {
-      const double theta = std::numbers::pi * i / n, phi = std::numbers::pi * j / n;
-      text += "v " + std::to_string(std::sin(theta) * std::cos(phi)) + " " +
-              std::to_string(std::sin(theta) * std::sin(phi)) + " " + std::to_string(std::cos(theta)) + "\n";
+inline TriangleMesh inverted(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+inline TriangleMesh moved(TriangleMesh mesh, const Vec3d& by, double scale = 1) {
+  for (Vec3d& v : mesh.vertices) v = v * scale + by;
+  return mesh;
+}
+
+inline TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
+  const auto shift = static_cast<std::uint32_t>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  return a;
+}
+
+inline TriangleMesh without(TriangleMesh mesh, std::size_t first, std::size_t count) {
+  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                       mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first + count));
+  return mesh;
+}
+
+// Outward torus around z, n by m quads.
+inline TriangleMesh torus(double big, double small, std::uint32_t n, std::uint32_t m) {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < m; ++j) {
+      const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * j / m;
+      const double r = big + small * std::cos(v);
+      mesh.vertices.emplace_back(r * std::cos(u), r * std::sin(u), small * std::sin(v));
+      const std::uint32_t a = i * m + j, b = (i + 1) % n * m + j, c = (i + 1) % n * m + (j + 1) % m,
+                          d = i * m + (j + 1) % m;
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
     }
-  text += "v 0 0 -1\n";
-  const auto at = [&](int i, int j) { return std::to_string(2 + (i - 1) * 2 * n + j % (2 * n)); };
-  const std::string south = std::to_string(2 + (n - 1) * 2 * n);
-  for (int j = 0; j < 2 * n; ++j) {
-    text += "f 1 " + at(1, j) + " " + at(1, j + 1) + "\n";
-    for (int i = 1; i + 1 < n; ++i)
-      text += "f " + at(i, j) + " " + at(i + 1, j) + " " + at(i + 1, j + 1) + " " + at(i, j + 1) + "\n";
-    text += "f " + south + " " + at(n - 1, j + 1) + " " + at(n - 1, j) + "\n";
-  }
-  return text;
+  return mesh;
 }
 
-} // namespace levelray::test
+// A strip of n quads that closes with a half turn.
+inline TriangleMesh moebius(std::uint32_t n) {
+  TriangleMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double u = 2 * std::numbers::pi * i / n;
+    for (const double w : {-0.3, 0.3}) {
+      const double r = 1 + w * std::cos(u / 2);
+      mesh.vertices.emplace_back(r * std::cos(u), r * std::sin(u), w * std::sin(u / 2));
+    }
+    const std::uint32_t a = 2 * i, b = a + 1, c = i + 1 < n ? a + 2 : 1, d = i + 1 < n ? a + 3 : 0;
+    mesh.triangles.push_back({a, c, d});
+    mesh.triangles.push_back({a, d, b});
+  }
+  return mesh;
+}
+
+} // namespace levelray::made
