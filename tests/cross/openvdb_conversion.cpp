@@ -118,8 +118,8 @@ class Causes {
     if (std::fabs(before - d.ours) <= 0.01 * ours_.transform.voxel_size) return renormalised;
     if (!in && their_in) return outside_cause(d.sample, p);
     if (in && !their_in) return truth_.winding(p) > 1.5 ? overlap : other_side;
-    if (std::fabs(d.theirs) < std::fabs(d.ours)) // too large before, too small after it?
-      return std::fabs(before) > std::fabs(d.ours) ? renormalised : nearer;
+    if (std::fabs(d.theirs) < std::fabs(d.ours)) // was that so before the last step?
+      return std::signbit(before) == in && std::fabs(before) < std::fabs(d.ours) ? nearer : renormalised;
     // The same side and OpenVDB's value is larger: is the nearest surface one that it took away?
     const MeshPoint nearest = truth_.nearest(p);
     const Triangle& t = truth_.mesh().triangles[nearest.triangle];
