@@ -9,9 +9,11 @@
 #include "support/embree_scene.hpp"
 #endif
 
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 
@@ -24,6 +26,7 @@ constexpr std::size_t tile_rays = 1024; // a 32x32 tile
 struct Agreement {
   std::size_t hits = 0, only_ours = 0, only_theirs = 0;
   std::vector<double> errors; // |t difference| of common hits, in voxels, ascending
+  double degrees = 0;         // between the normals of common hits, mean
 
   double quantile(double q) const {
     return errors.empty() ? 0 : errors[static_cast<std::size_t>(q * static_cast<double>(errors.size() - 1))];
@@ -33,6 +36,7 @@ struct Agreement {
     return {{"hits", hits},
             {"only_levelray", only_ours},
             {"only_other", only_theirs},
+            {"mean_degrees_between_normals", degrees},
             {"t_difference_voxels",
              {{"median", quantile(0.5)},
               {"p99", quantile(0.99)},
@@ -42,15 +46,19 @@ struct Agreement {
 };
 
 template <class TheirHit>
-Agreement agreement(const std::vector<Hit>& ours, const std::vector<TheirHit>& theirs, double voxel) {
+Agreement agreement(const std::vector<PeerHit>& ours, const std::vector<TheirHit>& theirs, double voxel) {
   Agreement result;
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    result.hits += bool(ours[i]);
-    result.only_ours += ours[i] && !theirs[i].hit;
-    result.only_theirs += !ours[i] && theirs[i].hit;
-    if (ours[i] && theirs[i].hit)
-      result.errors.push_back(std::fabs(ours[i].t - static_cast<double>(theirs[i].t)) / voxel);
+    result.hits += ours[i].hit;
+    result.only_ours += ours[i].hit && !theirs[i].hit;
+    result.only_theirs += !ours[i].hit && theirs[i].hit;
+    if (!ours[i].hit || !theirs[i].hit) continue;
+    result.errors.push_back(std::fabs(ours[i].t - static_cast<double>(theirs[i].t)) / voxel);
+    const Vec3d n = Vec3d(theirs[i].normal).normalized();
+    result.degrees +=
+        std::atan2(n.cross(ours[i].normal).length(), n.dot(ours[i].normal)) * 180 / std::numbers::pi;
   }
+  if (!result.errors.empty()) result.degrees /= static_cast<double>(result.errors.size());
   std::sort(result.errors.begin(), result.errors.end());
   return result;
 }
@@ -58,9 +66,9 @@ Agreement agreement(const std::vector<Hit>& ours, const std::vector<TheirHit>& t
 void print(const char* name, const Agreement& a, std::size_t rays) {
   fmt::print("  against {}: {} of {} rays hit, {} only levelray's, {} only theirs; |t difference| in voxels: "
              "median {:.2g}, "
-             "p99 {:.2g}, p99.9 {:.2g}, max {:.2g}\n",
+             "p99 {:.2g}, p99.9 {:.2g}, max {:.2g}; normals {:.2g} degrees apart\n",
              name, a.hits, rays, a.only_ours, a.only_theirs, a.quantile(0.5), a.quantile(0.99),
-             a.quantile(0.999), a.quantile(1));
+             a.quantile(0.999), a.quantile(1), a.degrees);
 }
 
 } // namespace
@@ -85,9 +93,7 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
   const LevelSet level_set(grid);
   const OpenVdbLevelSet peer = OpenVdbLevelSet::from_grid(grid);
 
-  std::vector<Hit> hits(rays.size());
-  std::vector<Vec3f> normals(rays.size());
-  std::vector<PeerHit> peer_hits(rays.size());
+  std::vector<PeerHit> hits(rays.size()), peer_hits(rays.size());
   const auto by_tiles = [&](const auto& work) {
     const Stopwatch watch;
     parallel_for(rays.size(), tile_rays,
@@ -95,13 +101,19 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
     return watch.elapsed();
   };
   std::vector<Contestant> contestants;
-  contestants.push_back({"levelray", [&] {
-                           return by_tiles([&](std::size_t i, std::size_t n) {
-                             const std::span<const WorldRay> tile(&rays[i], n);
-                             closest_hits(level_set, tile, setup.intersector, {&hits[i], n});
-                             hit_normals(level_set, tile, {&hits[i], n}, setup.normals, {&normals[i], n});
-                           });
-                         }});
+  contestants.push_back(
+      {"levelray", [&] {
+         return by_tiles([&](std::size_t begin, std::size_t n) {
+           // As the renderer does: a tile at a time, of which t and normal are kept.
+           std::array<Hit, tile_rays> tile_hits;
+           std::array<Vec3f, tile_rays> normals;
+           const std::span<const WorldRay> tile(&rays[begin], n);
+           closest_hits(level_set, tile, setup.intersector, {tile_hits.data(), n});
+           hit_normals(level_set, tile, {tile_hits.data(), n}, setup.normals, {normals.data(), n});
+           for (std::size_t i = 0; i < n; ++i)
+             hits[begin + i] = {bool(tile_hits[i]), tile_hits[i].t, Vec3d(normals[i])};
+         });
+       }});
   contestants.push_back({"levelray's level set", [&] {
                            const Stopwatch watch;
                            const LevelSet again(grid);
@@ -132,6 +144,15 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
   }
 #endif
 
+  std::uint64_t all_steps = 0, all_tests = 0;
+  for (const WorldRay& ray : rays) {
+    const Hit hit = closest_hit(level_set, ray, setup.intersector);
+    all_steps += hit.counts.steps, all_tests += hit.counts.tests;
+  }
+  const double count = static_cast<double>(rays.size());
+  const double steps = static_cast<double>(all_steps) / count, tests = static_cast<double>(all_tests) / count;
+  fmt::print("  per ray: {:.2f} steps, {:.2f} tests\n", steps, tests);
+
   // Everyone's answers before anyone's times.
   for (Contestant& c : contestants) c.run();
   const Agreement with_openvdb = agreement(hits, peer_hits, voxel);
@@ -153,7 +174,6 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
 
   compete(contestants, setup.repetitions);
   nlohmann::json rows = nlohmann::json::array();
-  const double count = static_cast<double>(rays.size());
   fmt::print("  {:<32}{:>12}{:>28}{:>20}\n", "", "Mray/s CPU", "CPU ms: median (min-max)", "Mray/s wall");
   for (const Contestant& c : contestants) {
     const Spread p = cpu(c), w = wall(c);
@@ -181,6 +201,8 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
           {"intersector", setup.intersector},
           {"normals", setup.normals},
           {"threads", setup.threads},
+          {"steps_per_ray", steps},
+          {"tests_per_ray", tests},
           {"level_set_bytes", level_set.bytes()},
           {"grid_bytes", grid.bytes()},
           {"verified", verified},
