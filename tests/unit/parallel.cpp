@@ -3,8 +3,12 @@
 #include "levelray/core/parallel.hpp"
 
 #include <atomic>
+#include <chrono>
+#include <mutex>
 #include <numeric>
+#include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -34,6 +38,28 @@ TEST_CASE("parallel loops cover every index once, in chunks that do not depend o
         CHECK(chunks == reference);
       }
     }
+}
+
+TEST_CASE("more threads than cores take part when they are asked for, and one when one is") {
+  for (const int threads : {1, 7}) {
+    const ThreadLimit limit(threads);
+    std::mutex mutex;
+    std::set<std::thread::id> seen;
+    // Chunks wait until all threads have come, or for a second: a starved machine may lack some, never have
+    // more.
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    parallel_for(200, 1, [&](std::size_t, std::size_t) {
+      for (bool all = false; !all && std::chrono::steady_clock::now() < deadline;) {
+        const std::lock_guard lock(mutex);
+        seen.insert(std::this_thread::get_id());
+        all = seen.size() >= static_cast<std::size_t>(threads);
+      }
+    });
+    if (threads == 1)
+      CHECK(seen.size() == 1);
+    else
+      CHECK((seen.size() > 2 && seen.size() <= 7));
+  }
 }
 
 TEST_CASE("what one parallel loop wrote the next one and the caller may read") {

@@ -8,6 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <tbb/version.h>
 
 namespace levelray {
@@ -42,17 +43,25 @@ void parallel_for(std::size_t count, std::size_t grain,
   const std::size_t chunks = (count + grain - 1) / grain;
   char begun = 0, done = 0;
   publish(begun);
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, chunks, 1),
-      [&](const tbb::blocked_range<std::size_t>& range) {
-        observe(begun);
-        for (std::size_t chunk = range.begin(); chunk != range.end(); ++chunk) {
-          check_cancel();
-          body(chunk * grain, std::min(count, (chunk + 1) * grain));
-        }
-        publish(done);
-      },
-      tbb::simple_partitioner());
+  const auto loop = [&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, chunks, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          observe(begun);
+          for (std::size_t chunk = range.begin(); chunk != range.end(); ++chunk) {
+            check_cancel();
+            body(chunk * grain, std::min(count, (chunk + 1) * grain));
+          }
+          publish(done);
+        },
+        tbb::simple_partitioner());
+  };
+  // TBB's own arena has a place per core: more threads than that, when asked for, need one of their own.
+  const int threads = thread_count();
+  if (threads > tbb::info::default_concurrency())
+    tbb::task_arena(threads).execute(loop);
+  else
+    loop();
   observe(done);
 }
 
