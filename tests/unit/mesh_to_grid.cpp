@@ -7,6 +7,7 @@
 #include "support/made_meshes.hpp"
 
 #include <cstring>
+#include <random>
 
 using namespace levelray;
 using namespace levelray::test;
@@ -143,6 +144,29 @@ TEST_CASE("a box without a lid is closed by its winding number") {
     const double w = winding_number(open, result.grid.transform.to_world(Vec3d(i, j, k)));
     wrong += std::abs(w - 0.5) > 1e-6 && std::signbit(value) != (w > 0.5);
   });
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("a surface that is cracked along every edge is signed as the closed one") {
+  const TriangleMesh torus = made::torus(1, 0.33, 60, 30);
+  TriangleMesh cracked;
+  std::mt19937_64 rng(4);
+  std::uniform_real_distribution<double> jitter(-1e-6, 1e-6);
+  for (const Triangle& t : torus.triangles) {
+    const auto v = static_cast<std::uint32_t>(cracked.vertices.size());
+    for (const std::uint32_t i : t)
+      cracked.vertices.push_back(torus.vertices[i] + Vec3d(jitter(rng), jitter(rng), jitter(rng)));
+    cracked.triangles.push_back({v, v + 1, v + 2});
+  }
+  const ConvertedGrid closed = convert(torus, 0.06), open = convert(cracked, 0.06);
+  CHECK_THAT(open.report.warnings.at(0), Contains("10800 open edges"));
+  std::uint64_t compared = 0, wrong = 0;
+  for_each_sample(closed.grid, [&](int i, int j, int k, float value, bool) {
+    if (std::abs(value) < 1e-4) return; // 50 times the jitter: nearer samples have lost their side
+    ++compared;
+    wrong += std::signbit(value) != std::signbit(open.grid.value(i, j, k));
+  });
+  CHECK(compared > 20000);
   CHECK(wrong == 0);
 }
 

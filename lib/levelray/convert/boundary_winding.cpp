@@ -14,10 +14,6 @@ namespace {
 
 constexpr double full_angle = 4 * std::numbers::pi;
 constexpr std::uint32_t leaf_size = 4;
-// A cluster is seen as a dipole when that errs by less than this. Decisions are about half a full angle, and
-// errors are summed and respected; so this only balances clusters opened against direct sums.
-constexpr double accepted = 0.01 * full_angle;
-
 // Samples are moved by the same rule as in the crossing tests, (e1, e2, e3) with e1 >> e2 >> e3, here by real
 // but tiny amounts, so that a sample on a cap counts as on the same side in both terms of the difference.
 Vec3d moved(const Vec3d& p) {
@@ -87,7 +83,7 @@ double BoundaryWinding::exact(const Vec3d& p) const {
   return sum / full_angle;
 }
 
-BoundaryWinding::Estimate BoundaryWinding::estimate(const Vec3d& p) const {
+BoundaryWinding::Estimate BoundaryWinding::estimate(const Vec3d& p, double accepted) const {
   const Vec3d at = moved(p);
   double sum = 0, error = 0;
   for (std::uint32_t i = 0; i < cap_clusters_.size();) {
@@ -98,7 +94,7 @@ BoundaryWinding::Estimate BoundaryWinding::estimate(const Vec3d& p) const {
     const Vec3d to_center = cluster.center - at;
     const double distance = to_center.length(), nearest = distance - cluster.radius;
     const double bound = 2 * cluster.size * cluster.radius / (nearest * nearest * nearest);
-    if (nearest > 0 && bound < accepted) {
+    if (nearest > 0 && bound < accepted * full_angle) {
       sum += cluster.dipole.dot(to_center) / (distance * distance * distance);
       error += bound;
       i = cluster.skip;

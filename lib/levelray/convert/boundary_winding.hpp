@@ -21,11 +21,16 @@ class BoundaryWinding {
 
   bool empty() const { return caps_.empty(); }
 
+  // Whether there are so many caps that direct sums would take minutes: soups of thousands of unconnected
+  // triangles.
+  bool many() const { return caps_.size() > 3000; }
+
   // w(caps, p) lies in [value - error, value + error]; p in voxel space.
   struct Estimate {
     double value = 0, error = 0;
   };
-  Estimate estimate(const Vec3d& p) const;
+  // A cluster is seen as a dipole when that errs by less than `accepted` full angles; the errors are summed.
+  Estimate estimate(const Vec3d& p, double accepted = 0.01) const;
   // The direct sum, in double.
   double exact(const Vec3d& p) const;
 

@@ -240,6 +240,11 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   const Clock::time_point assemble_start = Clock::now();
   result.grid = assemble_grid(band, sides, transform, options.half_width_voxels, &report.inside_samples);
   report.distance_ms += ms_since(assemble_start);
+  if (boundary.many() && (report.sign == SignMethod::winding || report.sign == SignMethod::winding_abs))
+    report.warnings.push_back(fmt::format("the surface has {} open edges: its winding number was estimated, "
+                                          "and may decide wrongly where it is near one "
+                                          "half; weld the mesh's vertices if it is meant to be closed",
+                                          mesh.open_edges.size()));
   check_inside(mesh, result.grid, plan.voxel_size, thin_places, report);
   return result;
 }

@@ -22,21 +22,32 @@ bool decided(double cap_winding, double slack) {
   return std::abs(cap_winding - 0.5 - std::round(cap_winding - 0.5)) > slack;
 }
 
-// The caps' winding number at a sample, as exactly as the decision needs it.
+// The caps' winding number at a sample, as exactly as the decision needs it. Among very many caps the finest
+// estimate must do.
 double cap_winding_at(const BoundaryWinding& boundary, const Vec3i& sample) {
   const Vec3d p(sample.x, sample.y, sample.z);
-  const BoundaryWinding::Estimate estimate = boundary.estimate(p);
-  return decided(estimate.value, estimate.error) ? estimate.value : boundary.exact(p);
+  for (const double accepted : {1e-2, 1e-3}) {
+    const BoundaryWinding::Estimate estimate = boundary.estimate(p, accepted);
+    if (decided(estimate.value, estimate.error) || (boundary.many() && accepted < 1e-2))
+      return estimate.value;
+  }
+  return boundary.exact(p);
 }
 
 // The caps' winding number in a ball that no cap meets, when one value decides for all of it.
+//
+// Very many caps are the pieces of a surface that is cracked everywhere. Their winding number is nearly
+// constant away from them because they cancel, which no bound on their sum shows; there the value at the
+// centre decides when it is `margin` away from one half.
 struct BallWinding {
   double value = 0;
   bool decided = true;
 };
-BallWinding cap_winding_around(const BoundaryWinding& boundary, const Vec3d& center, double radius) {
+BallWinding cap_winding_around(const BoundaryWinding& boundary, const Vec3d& center, double radius,
+                               double margin) {
   if (boundary.empty()) return {};
   const BoundaryWinding::Estimate estimate = boundary.estimate(center);
+  if (boundary.many()) return {estimate.value, decided(estimate.value, margin)};
   return {estimate.value, decided(estimate.value, estimate.error + boundary.variation(center, radius))};
 }
 
@@ -90,7 +101,7 @@ NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWin
   // One look at the whole node, where no cap is in it.
   const bool node_smooth = !node || !node->near_cap;
   const BallWinding node_caps =
-      node_smooth ? cap_winding_around(boundary, center, node_radius) : BallWinding{0, false};
+      node_smooth ? cap_winding_around(boundary, center, node_radius, 0.3) : BallWinding{0, false};
   if (!node && node_caps.decided) {
     sides.inside = is_inside(winding(whole) - node_caps.value, method);
     return sides;
@@ -104,7 +115,7 @@ NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWin
     BallWinding caps = node_caps;
     if (!caps.decided && (node_smooth || !side.distance)) { // a block that no cap comes near
       const Vec3d block_center = Vec3d(block_first.x + 1.5, block_first.y + 1.5, block_first.z + 1.5);
-      caps = cap_winding_around(boundary, block_center, block_radius);
+      caps = cap_winding_around(boundary, block_center, block_radius, 0.15);
     }
     for (const BlockComponent& c : side.components) {
       if (caps.decided) {
