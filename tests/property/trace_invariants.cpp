@@ -4,6 +4,8 @@
 #include "support/catch.hpp"
 #include "support/trace_fixtures.hpp"
 
+#include <memory>
+
 using namespace levelray;
 using namespace levelray::test;
 
@@ -211,5 +213,42 @@ TEST_CASE("moving the grid by whole samples moves the hits and nothing else") {
     }
     CAPTURE(here[s].name);
     CHECK(different == 0);
+  }
+}
+
+TEST_CASE("rays traced in batches, past empty space in turns, answer as rays do alone") {
+  for (const Shape& shape : closed_shapes()) {
+    INFO(shape.name);
+    const LevelSet level_set(shape.grid);
+    RandomRays random(29);
+    std::vector<WorldRay> rays;
+    for (int n = 0; n < 1000; ++n) { // no multiple of a batch
+      rays.push_back(random.through(active_box(shape.grid)));
+      if (n % 5 == 0) rays.back().t_max = random.uniform(0, 60);
+      if (n % 7 == 0) rays.back().origin = point_inside(shape.grid, random);
+      if (n % 11 == 0) rays.back().direction = Vec3d(0, 0, 0);
+    }
+    std::vector<Hit> hits(rays.size());
+    closest_hits(level_set, rays, "exact", hits);
+    const auto any = std::make_unique<bool[]>(rays.size());
+    RayCounts batch_counts, counts;
+    any_hits(level_set, rays, "exact", {any.get(), rays.size()}, &batch_counts);
+    int missed = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      CAPTURE(i);
+      const Hit alone = trace_closest<Exact>(level_set, rays[i]); // walks the empty space itself
+      missed += !alone;
+      REQUIRE(hits[i].status == alone.status);
+      REQUIRE(hits[i].from_inside == alone.from_inside);
+      REQUIRE(hits[i].t == alone.t);
+      REQUIRE(hits[i].t_outside == alone.t_outside);
+      REQUIRE(hits[i].cell == alone.cell);
+      REQUIRE(hits[i].counts.steps == alone.counts.steps);
+      REQUIRE(hits[i].counts.tests == alone.counts.tests);
+      REQUIRE(any[i] == trace_any<Exact>(level_set, rays[i], counts));
+    }
+    CHECK(missed > 100);
+    CHECK(batch_counts.steps == counts.steps);
+    CHECK(batch_counts.tests == counts.tests);
   }
 }

@@ -122,6 +122,35 @@ TEST_CASE("a neighbourhood is the samples around its cell") {
   }
 }
 
+TEMPLATE_LIST_TEST_CASE("the samples for normals are the same from the tracer's records and from the grid",
+                        "", NormalSchemes) {
+  // Cells at every place in their blocks, with and without surface blocks as neighbours.
+  for (const BlockGrid& grid : {sphere_grid(7.3), torus_grid(10, 1)}) {
+    const LevelSet level_set(grid);
+    RandomRays random(7);
+    int hits = 0, beyond_records = 0;
+    for (int n = 0; n < 2000; ++n) {
+      const WorldRay ray = random.through(active_box(grid));
+      const Hit hit = closest_hit(level_set, ray);
+      if (!hit) continue;
+      ++hits;
+      CellPosition at;
+      at.cell = hit.cell;
+      const Vec3d p = (ray.at(hit.t) - grid.transform.origin) * (1 / grid.transform.voxel_size);
+      for (int a = 0; a < 3; ++a) {
+        at.local[a] = std::min(std::max(p[a] - hit.cell[a], 0.0), 1.0);
+        Vec3i next = hit.cell;
+        next[a] += (hit.cell[a] & 3) == 0 ? -1 : (hit.cell[a] & 3) == 3 ? 2 : 0;
+        beyond_records += !level_set.surface().find_record(next);
+      }
+      const Vec3f from_grid(unit_normal<TestType>(Neighbourhood(grid, hit.cell), at));
+      REQUIRE(hit_normal(level_set, ray, hit, TestType::name) == from_grid);
+    }
+    CHECK(hits > 300);
+    CHECK(beyond_records > 30);
+  }
+}
+
 TEST_CASE("an unknown normal scheme is refused with the legal names") {
   const BlockGrid grid = sphere_grid(3);
   const LevelSet level_set(grid);

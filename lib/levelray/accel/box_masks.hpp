@@ -8,7 +8,7 @@
 namespace levelray {
 
 // The mask with the axes of `octant` mirrored: child (x,y,z) moves to (3-x,y,z) and so on.
-inline std::uint64_t mirror_mask(std::uint64_t mask, int octant) {
+[[gnu::always_inline]] inline std::uint64_t mirror_mask(std::uint64_t mask, int octant) {
   if (octant & 1) {
     mask = (mask & 0x5555555555555555ull) << 1 | (mask >> 1 & 0x5555555555555555ull);
     mask = (mask & 0x3333333333333333ull) << 2 | (mask >> 2 & 0x3333333333333333ull);

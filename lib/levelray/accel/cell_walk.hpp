@@ -20,6 +20,7 @@
 #pragma once
 
 #include "levelray/accel/box_masks.hpp"
+#include "levelray/accel/node_walk.hpp"
 #include "levelray/accel/ray_frame.hpp"
 #include "levelray/core/bits.hpp"
 #include "levelray/grid/cell_segment.hpp"
@@ -44,7 +45,7 @@ namespace walk {
 struct PlaneTimes {
   double s[3][6]; // the sixth only evens out the loop
 
-  PlaneTimes(const RayFrame& ray, const int (&corner)[3], int child_size) {
+  [[gnu::always_inline]] PlaneTimes(const RayFrame& ray, const int (&corner)[3], int child_size) {
     for (int a = 0; a < 3; ++a) {
       const double first = corner[a], size = child_size;
       for (int k = 0; k < 6; ++k) s[a][k] = (first + k * size - ray.origin[a]) * ray.inverse[a];
@@ -61,8 +62,8 @@ struct PlaneTimes {
 // A superset of the children of the box at `corner` that the ray meets in [in, out], an interval in which it
 // is in the box: those between the children of the ends. The margin of 2^-20 children covers the rounding of
 // the points against that of the plane times, which is below 2^-28 voxel in a box of 2^22 voxels.
-inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3], double per_child, double in,
-                                double out) {
+[[gnu::always_inline]] inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3],
+                                                       double per_child, double in, double out) {
   std::uint64_t mask = ~std::uint64_t{0};
   for (int a = 0; a < 3; ++a) {
     const double first = (ray.origin[a] + in * ray.direction[a] - corner[a]) * per_child - 0x1p-20;
@@ -77,7 +78,8 @@ inline std::uint64_t chord_mask(const RayFrame& ray, const int (&corner)[3], dou
 }
 
 // The ends of the ray's segment in a cell.
-inline void set_ends(const RayFrame& ray, const PlaneTimes& times, const int (&digit)[3], VisitedCell& cell) {
+[[gnu::always_inline]] inline void set_ends(const RayFrame& ray, const PlaneTimes& times,
+                                            const int (&digit)[3], VisitedCell& cell) {
   for (int a = 0; a < 3; ++a) {
     const double low = cell.position[a], high = low + 1;
     // cell.in is the largest of the lower planes' times and 0, cell.out likewise.
@@ -94,21 +96,14 @@ inline void set_ends(const RayFrame& ray, const PlaneTimes& times, const int (&d
 } // namespace walk
 
 // Calls visit(cell) for every surface cell that the ray meets, front to back, until it returns true. Returns
-// whether it did.
+// whether it did. Begins where skip_empty_nodes, if it was called, has moved the ray to.
 template <class Visit>
 bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& counts, Visit&& visit) {
-  const std::uint8_t* const leaps = surface.leaps(ray.octant);
-  const int dims[3] = {surface.node_dims().x, surface.node_dims().y, surface.node_dims().z};
-
-  // The table as the mirrored ray sees it.
-  std::ptrdiff_t stride[3] = {1, dims[0], std::ptrdiff_t{dims[0]} * dims[1]};
-  std::ptrdiff_t table_origin = 0;
+  const walk::NodeTable table(surface, ray.octant);
   int record_stride[3] = {1, SurfaceBlocks::record_stride_y, SurfaceBlocks::record_stride_z};
   int record_origin = 0;
   for (int a = 0; a < 3; ++a)
     if (ray.octant >> a & 1) {
-      table_origin += stride[a] * (dims[a] - 1);
-      stride[a] = -stride[a];
       record_origin += record_stride[a] * block_dim;
       record_stride[a] = -record_stride[a];
     }
@@ -162,42 +157,20 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
   };
 
   int at[3] = {ray.start_node[0], ray.start_node[1], ray.start_node[2]};
-  double s = 0;
+  double s = ray.start;
+  counts.nodes += ray.skipped;
   for (;;) {
     ++counts.nodes;
-    const auto entry =
-        static_cast<std::size_t>(table_origin + at[0] * stride[0] + at[1] * stride[1] + at[2] * stride[2]);
-    const int leap = leaps[entry];
+    const std::size_t entry = table.entry(at);
+    const int leap = table.leaps[entry];
     const int length = leap ? leap : 1;
-
-    // Find where the ray leaves the node, or the empty cube that begins with it.
-    double leave[3];
-    for (int a = 0; a < 3; ++a) leave[a] = ((at[a] + length) * node_dim - ray.origin[a]) * ray.inverse[a];
-    const bool by_x = (leave[0] <= leave[1]) & (leave[0] <= leave[2]);
-    const bool by_y = !by_x & (leave[1] <= leave[2]);
-    const double next = std::max(s, std::min(leave[0], std::min(leave[1], leave[2])));
-
+    const walk::NodeExit exit(ray, at, length, s);
     if (!leap) {
       const int corner[3] = {at[0] * node_dim, at[1] * node_dim, at[2] * node_dim};
-      if (visit_node(surface.node(entry), corner, s, std::min(next, ray.end))) return true;
+      if (visit_node(surface.node(entry), corner, s, std::min(exit.s, ray.end))) return true;
     }
-    // Beyond the end nothing counts; a plane crossed at the very end is no reason to go on either, because
-    // the cells before it have been visited up to it.
-    if (!(next < ray.end)) return false;
-
-    // Move on: the crossed axis by integers, the others to where the ray is.
-    const int crossed[3] = {by_x, by_y, !by_x & !by_y};
-    if (length > 1)
-      for (int a = 0; a < 3; ++a) {
-        const int p = static_cast<int>((ray.origin[a] + next * ray.direction[a]) * (1.0 / node_dim));
-        // Rounding may put the point on the far side of the cube, or of the table.
-        const int inside = std::min(std::max(p, at[a]), std::min(at[a] + length, dims[a]) - 1);
-        at[a] = crossed[a] ? at[a] + length : inside;
-      }
-    else
-      for (int a = 0; a < 3; ++a) at[a] += crossed[a];
-    if ((at[0] >= dims[0]) | (at[1] >= dims[1]) | (at[2] >= dims[2])) return false;
-    s = next;
+    if (!exit.move(ray, table, length, at)) return false;
+    s = exit.s;
   }
 }
 

@@ -23,6 +23,8 @@ double reciprocal_power(double x) {
 
 bool enter_box(const SurfaceBlocks& surface, const GridTransform& transform, const WorldRay& ray,
                RayFrame& frame) {
+  frame.start = 0;
+  frame.skipped = 0;
   if (surface.empty() || !(ray.t_min <= ray.t_max)) return false;
   const double per_voxel = 1 / transform.voxel_size;
 

@@ -20,8 +20,11 @@ struct RayFrame {
   double end;          // the last s, >= 0
   double t_at_start;   // t = t_at_start + s * t_per_s
   double t_per_s;
-  int octant;        // bit a: axis a is mirrored
-  int start_node[3]; // that holds the origin, in the frame's nodes
+  int octant;            // bit a: axis a is mirrored
+  int start_node[3];     // where the walk begins, in the frame's nodes: that which holds the origin, or one
+                         // behind empty ones
+  double start;          // s there
+  std::uint32_t skipped; // steps taken from the origin to there
   bool from_outside; // s = 0 lies on the box's hull, where every sample is positive: the ray came in there
 
   double t(double s) const { return t_at_start + s * t_per_s; }

@@ -48,6 +48,21 @@ class SurfaceBlocks {
   std::size_t block_count() const { return cells_.size(); }
   std::uint64_t cells(std::size_t block) const { return cells_[block]; }
   const float* record(std::size_t block) const { return &records_[block * record_floats]; }
+  // The record of the block that holds a cell, or null where the surface crosses no cell of that block.
+  const float* find_record(const Vec3i& cell) const {
+    const auto x = static_cast<std::uint32_t>((cell.x >> 4) - node_min_.x),
+               y = static_cast<std::uint32_t>((cell.y >> 4) - node_min_.y),
+               z = static_cast<std::uint32_t>((cell.z >> 4) - node_min_.z);
+    const auto dims_x = static_cast<std::uint32_t>(node_dims_.x),
+               dims_y = static_cast<std::uint32_t>(node_dims_.y);
+    if (x >= dims_x || y >= dims_y || z >= static_cast<std::uint32_t>(node_dims_.z)) return nullptr;
+    const std::size_t at = x + std::size_t{dims_x} * (y + std::size_t{dims_y} * z);
+    if (leaps_[0][at]) return nullptr;
+    const Node& found = node(at);
+    const int bit = bit_in_node(cell.x, cell.y, cell.z);
+    if (!(found.blocks >> bit & 1)) return nullptr;
+    return record(found.first + count_bits(found.blocks & ((std::uint64_t{1} << bit) - 1)));
+  }
   std::size_t bytes() const;
 
  private:

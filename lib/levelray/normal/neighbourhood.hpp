@@ -3,56 +3,26 @@
 
 #include "levelray/grid/block_grid.hpp"
 
-#include <cstdint>
-
 namespace levelray {
 
-// Where a sample of a row of four lies.
-struct SampleStep {
-  std::uint32_t block;  // bit of the row's axis, set in the second block
-  std::uint32_t offset; // in the block
-};
-struct SampleSteps {
-  SampleStep of[3][4][4]; // by axis, place of the first sample in its block, sample
-};
-inline constexpr SampleSteps sample_steps = [] {
-  SampleSteps all{};
-  for (unsigned a = 0; a < 3; ++a)
-    for (unsigned first = 0; first < 4; ++first)
-      for (unsigned i = 0; i < 4; ++i)
-        all.of[a][first][i] = {(first + i) >> 2 << a, ((first + i) & 3) << 2 * a};
-  return all;
-}();
-
-// Reads samples cell-1 .. cell+2 along each axis. They lie in at most two blocks per axis; each of the at
-// most eight blocks is looked up once, and then a sample costs one load.
+// Samples cell-1 .. cell+2 along each axis, counted from the cell's lowest corner. Normal schemes look at 32
+// of them only, those with at most one index that is -1 or 2: whoever fills a neighbourhood for them may
+// leave the others as they are.
 class Neighbourhood {
  public:
-  Neighbourhood() = default; // to be assigned
-  Neighbourhood(const BlockGrid& grid, const Vec3i& cell);
-
-  // Asks for the cache lines that the samples lie in: 16 floats of one z each.
-  void prefetch() const {
-    const unsigned crossed = crossed_ & 3;
-    unsigned b = 0;
-    do {
-      for (const SampleStep& z : sample_steps.of[2][first_[2]])
-        __builtin_prefetch(blocks_[b | z.block] + z.offset);
-      b = (b - crossed) & crossed;
-    } while (b);
+  Neighbourhood() = default; // to be filled
+  Neighbourhood(const BlockGrid& grid, const Vec3i& cell) {
+    for (int k = -1; k < 3; ++k)
+      for (int j = -1; j < 3; ++j)
+        for (int i = -1; i < 3; ++i) at(i, j, k) = grid.value(cell.x + i, cell.y + j, cell.z + k);
   }
 
-  // Sample (i,j,k), counted from the cell's lowest corner, each -1 .. 2.
-  float at(int i, int j, int k) const {
-    const SampleStep &x = sample_steps.of[0][first_[0]][i + 1], &y = sample_steps.of[1][first_[1]][j + 1],
-                     &z = sample_steps.of[2][first_[2]][k + 1];
-    return blocks_[x.block | y.block | z.block][x.offset + y.offset + z.offset];
-  }
+  // Sample (i,j,k), each -1 .. 2.
+  float at(int i, int j, int k) const { return samples_[k + 1][j + 1][i + 1]; }
+  float& at(int i, int j, int k) { return samples_[k + 1][j + 1][i + 1]; }
 
  private:
-  std::uint32_t first_[3]; // of the lowest samples, in their block
-  const float* blocks_[8];
-  unsigned crossed_; // axes with samples in two blocks
+  float samples_[4][4][4];
 };
 
 } // namespace levelray

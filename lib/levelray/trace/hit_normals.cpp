@@ -19,29 +19,77 @@ CellPosition cell_position(const Vec3d& origin, double per_voxel, const WorldRay
   return at;
 }
 
+constexpr int stride[3] = {1, SurfaceBlocks::record_stride_y, SurfaceBlocks::record_stride_z};
+
+// Copies the 2x2 samples with index `side` along axis a, and 0 or 1 along the others, from a record in which
+// the first of them lies at `first`.
+template <int a, int side>
+void copy_face(const float* first, Neighbourhood& samples) {
+  constexpr int b = a == 0 ? 1 : 0, c = a == 2 ? 1 : 2;
+  constexpr int x = a == 0 ? side : 0, y = a == 1 ? side : 0, z = a == 2 ? side : 0;
+  samples.at(x, y, z) = first[0];
+  samples.at(x + (b == 0), y + (b == 1), z) = first[stride[b]];
+  samples.at(x, y + (c == 1), z + (c == 2)) = first[stride[c]];
+  samples.at(x + (b == 0), y + (b == 1) + (c == 1), z + (c == 2)) = first[stride[b] + stride[c]];
+}
+
+// The same for a side outside the cell, -1 or 2, which may lie beyond the record of the cell's block: then it
+// comes from that of the neighbour there, or from the grid where the neighbour is no surface block.
+template <int a, int side>
+void copy_side(const LevelSet& level_set, const Vec3i& cell, const float* corner, int offset,
+               Neighbourhood& samples) {
+  if ((cell[a] & 3) != (side < 0 ? 0 : block_dim - 1))
+    return copy_face<a, side>(corner + side * stride[a], samples);
+  Vec3i beyond = cell;
+  beyond[a] += side;
+  if (const float* const record = level_set.surface().find_record(beyond))
+    return copy_face<a, side>(record + offset + (side < 0 ? side + block_dim : side - block_dim) * stride[a],
+                              samples);
+  for (int q = 0; q < 2; ++q)
+    for (int p = 0; p < 2; ++p) {
+      Vec3i at(0, 0, 0);
+      at[a] = side, at[a == 0 ? 1 : 0] = p, at[a == 2 ? 1 : 2] = q;
+      samples.at(at.x, at.y, at.z) = level_set.grid().value(cell.x + at.x, cell.y + at.y, cell.z + at.z);
+    }
+}
+
+// Fills in the samples around a cell that normal schemes look at, from the records, which are in cache
+// because the tracer has just read them.
+void copy_samples(const LevelSet& level_set, const Vec3i& cell, Neighbourhood& samples) {
+  const float* const record = level_set.surface().find_record(cell);
+  if (!record) { // no ray can have hit it
+    samples = Neighbourhood(level_set.grid(), cell);
+    return;
+  }
+  const int offset = (cell.x & 3) + (cell.y & 3) * stride[1] + (cell.z & 3) * stride[2];
+  const float* const corner = record + offset;
+  copy_face<0, 0>(corner, samples);
+  copy_face<0, 1>(corner + stride[0], samples);
+  copy_side<0, -1>(level_set, cell, corner, offset, samples);
+  copy_side<0, 2>(level_set, cell, corner, offset, samples);
+  copy_side<1, -1>(level_set, cell, corner, offset, samples);
+  copy_side<1, 2>(level_set, cell, corner, offset, samples);
+  copy_side<2, -1>(level_set, cell, corner, offset, samples);
+  copy_side<2, 2>(level_set, cell, corner, offset, samples);
+}
+
 } // namespace
 
 void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std::span<const Hit> hits,
                  std::string_view scheme, std::span<Vec3f> normals) {
   assert(rays.size() == hits.size() && hits.size() == normals.size());
-  const BlockGrid& grid = level_set.grid();
-  const Vec3d origin = grid.transform.origin;
-  const double per_voxel = 1 / grid.transform.voxel_size;
+  const GridTransform& transform = level_set.grid().transform;
+  const Vec3d origin = transform.origin;
+  const double per_voxel = 1 / transform.voxel_size;
   const auto work = [&]<class Scheme>(Scheme) {
-    // In batches: all samples are asked for before the first are used.
-    constexpr std::size_t batch = 32;
-    Neighbourhood samples[batch];
-    for (std::size_t first = 0; first < hits.size(); first += batch) {
-      const std::size_t last = std::min(first + batch, hits.size());
-      for (std::size_t i = first; i < last; ++i) {
-        if (!hits[i]) continue;
-        samples[i - first] = Neighbourhood(grid, hits[i].cell);
-        samples[i - first].prefetch();
+    Neighbourhood samples;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      if (!hits[i]) {
+        normals[i] = Vec3f(0, 0, 0);
+        continue;
       }
-      for (std::size_t i = first; i < last; ++i)
-        normals[i] = hits[i] ? Vec3f(unit_normal<Scheme>(samples[i - first],
-                                                         cell_position(origin, per_voxel, rays[i], hits[i])))
-                             : Vec3f(0, 0, 0);
+      copy_samples(level_set, hits[i].cell, samples);
+      normals[i] = Vec3f(unit_normal<Scheme>(samples, cell_position(origin, per_voxel, rays[i], hits[i])));
     }
   };
   if (visit_method<NormalSchemes>(scheme, work)) return;

@@ -55,8 +55,24 @@ void for_intersector(std::string_view name, Work&& work) {
 
 namespace {
 
+// In batches: frames do not depend on each other, so what computing one has to wait for is filled with
+// others. work(i, frame, entered) for every ray i; it meets nothing unless it entered.
+template <class Work>
+void for_each_frame(const LevelSet& level_set, std::span<const WorldRay> rays, Work&& work) {
+  constexpr std::size_t batch = 32;
+  RayFrame frames[batch];
+  bool entered[batch];
+  for (std::size_t first = 0; first < rays.size(); first += batch) {
+    const std::size_t count = std::min(batch, rays.size() - first);
+    for (std::size_t i = 0; i < count; ++i)
+      entered[i] = enter_box(level_set.surface(), level_set.grid().transform, rays[first + i], frames[i]);
+    skip_empty_nodes(level_set.surface(), {frames, count}, {entered, count});
+    for (std::size_t i = 0; i < count; ++i) work(first + i, frames[i], entered[i]);
+  }
+}
+
 template <class Intersector>
-Hit trace_frame(const LevelSet& level_set, const RayFrame& frame) {
+[[gnu::noinline]] Hit trace_frame(const LevelSet& level_set, const RayFrame& frame) {
   Hit hit;
   StartingSide side(frame);
   WalkCounts walked;
@@ -78,6 +94,17 @@ Hit trace_frame(const LevelSet& level_set, const RayFrame& frame) {
   return hit;
 }
 
+template <class Intersector>
+[[gnu::noinline]] bool any_in_frame(const LevelSet& level_set, const RayFrame& frame, RayCounts& counts) {
+  StartingSide side(frame);
+  WalkCounts walked;
+  const bool hit = walk_cells(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
+    return Intersector::exists(cell.segment, side.at_first(cell.segment));
+  });
+  add_counts(counts, walked);
+  return hit;
+}
+
 } // namespace
 
 template <class Intersector>
@@ -91,33 +118,22 @@ Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
 template <class Intersector>
 bool trace_any(const LevelSet& level_set, const WorldRay& ray, RayCounts& counts) {
   RayFrame frame;
-  if (!enter_box(level_set.surface(), level_set.grid().transform, ray, frame)) return false;
-
-  StartingSide side(frame);
-  WalkCounts walked;
-  const bool hit = walk_cells(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
-    return Intersector::exists(cell.segment, side.at_first(cell.segment));
-  });
-  add_counts(counts, walked);
-  return hit;
+  return enter_box(level_set.surface(), level_set.grid().transform, ray, frame) &&
+         any_in_frame<Intersector>(level_set, frame, counts);
 }
 
 void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
                   std::span<Hit> hits) {
   assert(rays.size() == hits.size());
   for_intersector(intersector, [&]<class Intersector>(Intersector) {
-    // In batches: the frames do not depend on each other, so computing them side by side hides their
-    // divisions.
-    constexpr std::size_t batch = 32;
-    RayFrame frames[batch];
-    bool entered[batch];
-    for (std::size_t first = 0; first < rays.size(); first += batch) {
-      const std::size_t count = std::min(batch, rays.size() - first);
-      for (std::size_t i = 0; i < count; ++i)
-        entered[i] = enter_box(level_set.surface(), level_set.grid().transform, rays[first + i], frames[i]);
-      for (std::size_t i = 0; i < count; ++i)
-        hits[first + i] = entered[i] ? trace_frame<Intersector>(level_set, frames[i]) : Hit{};
-    }
+    for_each_frame(level_set, rays, [&](std::size_t i, const RayFrame& frame, bool entered) {
+      if (entered) {
+        hits[i] = trace_frame<Intersector>(level_set, frame);
+      } else {
+        hits[i] = Hit{};
+        hits[i].counts.steps = frame.skipped;
+      }
+    });
   });
 }
 
@@ -132,7 +148,10 @@ void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::st
   assert(rays.size() == hits.size());
   RayCounts sum;
   for_intersector(intersector, [&]<class Intersector>(Intersector) {
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = trace_any<Intersector>(level_set, rays[i], sum);
+    for_each_frame(level_set, rays, [&](std::size_t i, const RayFrame& frame, bool entered) {
+      hits[i] = entered && any_in_frame<Intersector>(level_set, frame, sum);
+      if (!entered) sum.steps += frame.skipped;
+    });
   });
   if (counts) counts->steps += sum.steps, counts->tests += sum.tests;
 }
@@ -151,7 +170,7 @@ template <class... I>
 constexpr auto instantiate(std::tuple<I...>*) {
   return std::tuple{&trace_closest<I>..., &trace_any<I>...};
 }
-[[maybe_unused]] constexpr auto instances = instantiate(static_cast<Intersectors*>(nullptr));
+[[gnu::used]] constexpr auto instances = instantiate(static_cast<Intersectors*>(nullptr));
 
 } // namespace
 
