@@ -116,23 +116,25 @@ TEMPLATE_LIST_TEST_CASE("any_hit finds a hit exactly when closest_hit does", "",
   }
 }
 
-TEST_CASE("a secondary ray from t_outside does not hit the surface it starts from") {
+TEMPLATE_LIST_TEST_CASE("a secondary ray from t_outside does not hit the surface it starts from", "",
+                        Intersectors) {
+  if (TestType::name == "midpoint") return; // hits every cell of the surface, the one it starts in too
   for (const Shape& shape : closed_shapes()) {
     const LevelSet level_set(shape.grid);
     RandomRays random(23);
     std::size_t began_inside = 0, hits = 0, backwards = 0;
     for (int i = 0; i < 20000; ++i) {
       const WorldRay ray = random.through(active_box(shape.grid));
-      const Hit hit = closest_hit(level_set, ray);
+      const Hit hit = closest_hit(level_set, ray, TestType::name);
       if (!hit) continue;
       ++hits;
       WorldRay secondary;
       secondary.origin = ray.at(hit.t_outside);
       secondary.direction = random.direction();
-      began_inside += closest_hit(level_set, secondary).from_inside;
+      began_inside += closest_hit(level_set, secondary, TestType::name).from_inside;
       // Straight back there is nothing but the way it came.
       secondary.direction = -ray.direction;
-      backwards += any_hit(level_set, secondary);
+      backwards += any_hit(level_set, secondary, TestType::name);
     }
     CAPTURE(shape.name, hits);
     CHECK(began_inside == 0);

@@ -8,6 +8,8 @@
 
 #include "levelray/intersect/cell_root.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace levelray {
@@ -35,18 +37,26 @@ struct FalsePosition {
     }
     if (f_high > 0) return false;
 
+    // A start for secondary rays must be positive by more than their rounding (see exact.cpp); the later
+    // steps come closer to the root than that.
+    float largest = 0;
+    for (const float corner : segment.corner) largest = std::max(largest, std::fabs(corner));
+    const double margin = 0x1p-36 * static_cast<double>(largest);
+    if (f_low > margin) root.outside = 0;
+
     // f(low) > 0 >= f(high) throughout, so the denominator is positive.
     double low = 0, high = 1;
     for (int step = 1;; ++step) {
       root.at = low + (high - low) * (f_low / (f_low - f_high));
       if (step == Steps) break;
       const double value = side * interpolate(segment.corner, point_at(segment, root.at));
-      if (value > 0)
+      if (value > 0) {
         low = root.at, f_low = value;
-      else
+        if (value > margin) root.outside = low;
+      } else {
         high = root.at, f_high = value;
+      }
     }
-    root.outside = low;
     return true;
   }
 };
