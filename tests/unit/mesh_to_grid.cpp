@@ -205,6 +205,28 @@ TEST_CASE("sizes that make no sense are usage errors, sizes that do not fit are 
   CHECK(kind_of_error(made::box(), options) == ErrorKind::usage);
 }
 
+TEST_CASE("the plan counts the samples of bands that are wide against the mesh") {
+  const PreparedMesh box = prepare_mesh(made::box());
+  for (const double half_width : {3.0, 10.0, 40.0}) {
+    ConvertOptions options;
+    options.resolution = 12;
+    options.half_width_voxels = half_width;
+    const ConvertPlan plan = plan_conversion(box, options);
+    const BlockGrid grid = mesh_to_grid(box, options).grid;
+    CAPTURE(half_width, plan.active_samples, grid.active_sample_count(), plan.bytes, grid.bytes());
+    // Never too few: 5 % stand for counting lattice points instead of a volume. At most twice as many:
+    // inside, where the two sides of the band meet, the formula counts what the mesh has no room for.
+    CHECK(static_cast<double>(plan.active_samples) > 0.95 * static_cast<double>(grid.active_sample_count()));
+    CHECK(plan.active_samples < 2 * grid.active_sample_count());
+    CHECK(plan.bytes > grid.bytes());
+  }
+  ConvertOptions options;
+  options.resolution = 64;
+  options.half_width_voxels = 1000;
+  options.max_memory = std::uint64_t{16} << 30;
+  CHECK(kind_of_error(made::box(), options) == ErrorKind::limit);
+}
+
 TEST_CASE("any half-width gives exact distances and a whole band") {
   const TriangleMesh torus = made::torus(1, 0.33, 40, 24);
   for (const double half_width : {1.0, 1.5, 2.0, 4.7}) {

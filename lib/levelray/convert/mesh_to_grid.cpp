@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <optional>
 
 namespace levelray {
@@ -19,6 +20,12 @@ using Clock = std::chrono::steady_clock;
 
 double ms_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+std::string memory_text(double bytes) {
+  if (bytes >= 0x1p40) return fmt::format("{:.3g} TiB", bytes * 0x1p-40);
+  return bytes >= 0x1p30 ? fmt::format("{:.3g} GiB", bytes * 0x1p-30)
+                         : fmt::format("{:.3g} MiB", bytes * 0x1p-20);
 }
 
 double longest_side(const Box3d& box) {
@@ -149,12 +156,19 @@ ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& opti
   const Vec3d size = mesh.report.bounds.size() / plan.voxel_size;
   const double band = 2 * options.half_width_voxels;
 
-  // A sheet of area A has A * 2H samples within H; blocks that meet it are about A * (2H + 4.3) / 64,
-  // measured on closed meshes. Thin or folded surfaces have fewer, never more than the box holds.
+  // A sheet of area A has A * 2H samples within H, and blocks that meet the band hold about as many as a band
+  // wider by 4.3 would, measured on closed meshes. Where the band is wide against the mesh, its rounded edges
+  // and corners weigh more than that: Steiner's formula (1840) for the mesh's box, pi H^2 (a + b + c) + 4/3
+  // pi H^3. Thin or folded surfaces have fewer, never more than the box holds.
   const double area = total_area(mesh.mesh) / (plan.voxel_size * plan.voxel_size);
-  const double box_samples = (size.x + band + 1) * (size.y + band + 1) * (size.z + band + 1);
-  const double samples = std::min(area * band + 100, box_samples);
-  const double blocks = std::min(area * (band + 4.3) / 64, box_samples / 64) + 8;
+  const auto samples_within = [&](double width, double spare) {
+    const double h = width / 2;
+    const double box = (size.x + width + spare) * (size.y + width + spare) * (size.z + width + spare);
+    const double rounding = std::numbers::pi * h * h * (size.x + size.y + size.z + 4.0 / 3 * h);
+    return std::min(area * width + rounding, box);
+  };
+  const double samples = samples_within(band, 1) + 100;
+  const double blocks = samples_within(band + 4.3, 0) / 64 + 8;
   double nodes = 1;
   for (int axis = 0; axis < 3; ++axis) nodes *= std::ceil((size[axis] + band) / node_dim) + 3;
 
@@ -168,15 +182,15 @@ ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& opti
   const auto refuse = [&](const std::string& why) {
     throw Error(ErrorKind::limit,
                 fmt::format("size {:.4g} x {:.4g} x {:.4g} with voxel {:.4g} needs about {:.2g} band samples "
-                            "and {:.3g} GiB; {}",
+                            "and {}; {}",
                             mesh.report.bounds.size().x, mesh.report.bounds.size().y,
-                            mesh.report.bounds.size().z, plan.voxel_size, samples, bytes / (1 << 30), why));
+                            mesh.report.bounds.size().z, plan.voxel_size, samples, memory_text(bytes), why));
   };
   if (!(nodes < max_nodes))
     refuse(fmt::format("the largest grid has {:.2g} nodes of 16^3, this one {:.2g}", max_nodes, nodes));
   if (options.max_memory != 0 && !(bytes <= static_cast<double>(options.max_memory)))
-    refuse(fmt::format("the limit is {:.3g} GiB (--max-memory)",
-                       static_cast<double>(options.max_memory) / (1 << 30)));
+    refuse(
+        fmt::format("the limit is {} (--max-memory)", memory_text(static_cast<double>(options.max_memory))));
 
   for (int axis = 0; axis < 3; ++axis) plan.dims[axis] = static_cast<int>(std::ceil(size[axis] + band)) + 1;
   plan.active_samples = static_cast<std::uint64_t>(samples);
