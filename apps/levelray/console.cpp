@@ -52,6 +52,10 @@ std::string with_commas(std::uint64_t n) {
   return digits;
 }
 
+std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
+  return with_commas(n) + " " + (n == 1 ? one : many);
+}
+
 std::string si_text(double value) {
   constexpr const char* prefixes[] = {"", "k", "M", "G", "T"};
   std::size_t prefix = 0;

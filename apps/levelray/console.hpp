@@ -25,6 +25,8 @@ void print_error(const std::string& message);
 
 // "1,234,567"
 std::string with_commas(std::uint64_t n);
+// "1 hole", "1,234 holes"
+std::string counted(std::uint64_t n, const std::string& one, const std::string& many);
 // "9.8 MB"
 std::string bytes_text(std::uint64_t bytes);
 // "0.02 s", "1.4 s", "2:05", "1:02:03"

@@ -27,7 +27,8 @@ void Convert::run() const {
   std::vector<std::string> outputs;
   check_output(output, input.path, {".vdb"}, outputs);
   if (!common.json.empty() && common.json != "-") check_output(common.json, input.path, {}, outputs);
-  if (std::filesystem::exists(input.path) && is_vdb(input.path))
+  std::error_code ignored;
+  if (std::filesystem::exists(input.path, ignored) && is_vdb(input.path))
     throw Error(ErrorKind::usage,
                 printable(input.path, 300) + ": is a level set already; convert takes a mesh");
 
@@ -44,8 +45,8 @@ void Convert::run() const {
   const double write_ms = write.ms();
 
   if (common.talks())
-    print(fmt::format("wrote {}: grid \"{}\", {} active samples, {}, {}\n", output, loaded.grid.name,
-                      with_commas(loaded.grid.active_sample_count()),
+    print(fmt::format("wrote {}: grid \"{}\", {} active samples, {}, {}\n", printable(output, 300),
+                      loaded.grid.name, with_commas(loaded.grid.active_sample_count()),
                       bytes_text(std::filesystem::file_size(output)), duration_text(total.ms() / 1000)));
   const ConvertReport& report = *loaded.converted;
   write_json(common, {{"input", mesh_json(*loaded.mesh)},

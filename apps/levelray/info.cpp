@@ -29,23 +29,26 @@ Json Info::mesh_info() const {
   const MeshReport& r = mesh.prepared.report;
   for (const std::string& warning : mesh.warnings) print_warning(warning);
   if (common.talks()) {
-    print(fmt::format("{}: {}\n", input.path, describe_mesh(r, input.units)));
-    print(fmt::format("{} components, {} shells, volume {:.6g}\n", with_commas(r.components),
-                      with_commas(r.shells), r.volume));
+    print(fmt::format("{}: {}\n", printable(input.path, 300), describe_mesh(r, input.units)));
+    const std::string unit = input.units.empty() ? "" : " " + input.units;
+    print(fmt::format("{}, {}, volume {:.6g}{}\n", counted(r.components, "component", "components"),
+                      counted(r.shells, "shell", "shells"), r.volume, unit.empty() ? "" : unit + "^3"));
     if (r.boundary_edges > 0)
-      print(fmt::format("{} open edges in {} holes, the largest {:.4g} across\n",
-                        with_commas(r.boundary_edges), with_commas(r.boundary_loops), r.longest_hole));
+      print(fmt::format("{} in {}, the largest {:.4g}{} across\n",
+                        counted(r.boundary_edges, "open edge", "open edges"),
+                        counted(r.boundary_loops, "hole", "holes"), r.longest_hole, unit));
     if (r.non_manifold_edges + r.non_manifold_vertices > 0)
-      print(fmt::format("{} non-manifold edges, {} non-manifold vertices\n",
-                        with_commas(r.non_manifold_edges), with_commas(r.non_manifold_vertices)));
+      print(fmt::format("{}, {}\n", counted(r.non_manifold_edges, "non-manifold edge", "non-manifold edges"),
+                        counted(r.non_manifold_vertices, "non-manifold vertex", "non-manifold vertices")));
     if (r.degenerate_triangles + r.duplicate_triangles + r.opposite_triangles + r.winding_clashes > 0)
       print(fmt::format(
           "{} degenerate, {} duplicate, {} opposite triangles; {} edges of clashing orientation\n",
           with_commas(r.degenerate_triangles), with_commas(r.duplicate_triangles),
           with_commas(r.opposite_triangles), with_commas(r.winding_clashes)));
     if (r.merged_vertices + r.unreferenced_vertices > 0)
-      print(fmt::format("{} vertices at the place of another, {} used by no triangle\n",
-                        with_commas(r.merged_vertices), with_commas(r.unreferenced_vertices)));
+      print(fmt::format("{} at the place of another, {} used by no triangle\n",
+                        counted(r.merged_vertices, "vertex", "vertices"),
+                        with_commas(r.unreferenced_vertices)));
   }
   Json facts = mesh_json(r);
   facts["shells"] = r.shells;
@@ -65,7 +68,8 @@ Json Info::mesh_info() const {
 
 Json Info::vdb_info() const {
   const std::vector<VdbGridInfo> grids = list_vdb(input.path, input.vdb_options());
-  if (common.talks()) print(fmt::format("{}: {} grids\n", input.path, grids.size()));
+  if (common.talks())
+    print(fmt::format("{}: {}\n", printable(input.path, 300), counted(grids.size(), "grid", "grids")));
   Json list = Json::array();
   std::vector<std::string> warnings;
   for (std::size_t i = 0; i < grids.size(); ++i) {
@@ -79,13 +83,29 @@ Json Info::vdb_info() const {
                   {"voxel_size", info.voxel_size},
                   {"traceable", info.note.empty()},
                   {"note", info.note}};
-    if (!info.note.empty()) {
-      if (common.talks()) print(fmt::format("{}: {}\n", title, printable(info.note, 300)));
-    } else {
+    VdbFile file;
+    std::string note = info.note;
+    if (note.empty()) {
       VdbReadOptions one = input.vdb_options();
       one.grid = fmt::format("[{}]", i);
-      const VdbFile file = read_vdb(input.path, one);
-      warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+      try {
+        file = read_vdb(input.path, one);
+      } catch (const Error& error) {
+        // What is wrong with one grid's values is a fact about it; the others are still of interest.
+        if (error.kind() != ErrorKind::bad_input || grids.size() == 1) throw;
+        note = error.what();
+        for (const std::string& known : {input.path + ": ", fmt::format("grid \"{}\" ", info.name)})
+          if (note.starts_with(known)) note.erase(0, known.size());
+        entry["traceable"] = false;
+        entry["note"] = note;
+      }
+    }
+    if (!note.empty()) {
+      if (common.talks()) print(fmt::format("{}: {}\n", title, printable(note, 300)));
+    } else {
+      const std::string which =
+          grids.size() > 1 ? fmt::format("grid \"{}\": ", printable(info.name, 100)) : "";
+      for (const std::string& warning : file.warnings) warnings.push_back(which + warning);
       const BlockGrid& grid = file.grid;
       const GridTransform& transform = grid.transform;
       const Box3i box = grid.active_bounds();

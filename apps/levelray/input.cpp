@@ -32,10 +32,12 @@ void announce(const InputOptions& input, const ConvertOptions& options, const Co
               const MeshReport& report) {
   const std::string by =
       options.voxel_size > 0 ? "" : fmt::format(" (longest side = {})", options.resolution);
-  print(fmt::format("{}: {}\n", input.path, describe_mesh(report, input.units)));
-  print(fmt::format("voxel {:.4g}{}, grid {} x {} x {}, band {:.4g} voxels; needs about {} and {}\n",
-                    plan.voxel_size, by, plan.dims.x, plan.dims.y, plan.dims.z, options.half_width_voxels,
-                    bytes_text(plan.bytes), duration_text(plan.seconds / thread_count())));
+  const std::string unit = input.units.empty() ? "" : " " + input.units;
+  print(fmt::format("{}: {}\n", printable(input.path, 300), describe_mesh(report, input.units)));
+  print(fmt::format("voxel {:.4g}{}{}, grid {} x {} x {}, band {:.4g} voxels; needs about {} and {}\n",
+                    plan.voxel_size, unit, by, plan.dims.x, plan.dims.y, plan.dims.z,
+                    options.half_width_voxels, bytes_text(plan.bytes),
+                    duration_text(plan.seconds / thread_count())));
 }
 
 } // namespace
@@ -63,6 +65,8 @@ LoadedMesh load_mesh(const InputOptions& options) {
   }
   loaded.format = file.format;
   loaded.warnings = std::move(file.warnings);
+  if (!options.grid.empty() || options.trust_input)
+    loaded.warnings.push_back("--grid and --trust-input are for .vdb files: no effect on a mesh");
   const auto& more = loaded.prepared.warnings;
   loaded.warnings.insert(loaded.warnings.end(), more.begin(), more.end());
   loaded.read_ms = watch.ms();
@@ -125,11 +129,14 @@ LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& convers
   loaded.grid = std::move(file.grid);
   loaded.warnings = std::move(file.warnings);
   loaded.read_ms = watch.ms();
+  if (conversion.given())
+    loaded.warnings.push_back("--resolution, --voxel, --band and --sign are for meshes: no effect on a .vdb");
   for (const std::string& warning : loaded.warnings) print_warning(warning);
   if (common.talks())
-    print(fmt::format("{}: grid \"{}\", {} active samples, voxel {:.4g}, band {:.3g} voxels\n", input.path,
-                      printable(loaded.grid.name, 100), with_commas(loaded.grid.active_sample_count()),
-                      loaded.grid.transform.voxel_size, loaded.grid.half_width_voxels()));
+    print(fmt::format("{}: grid \"{}\", {} active samples, voxel {:.4g}, band {:.3g} voxels\n",
+                      printable(input.path, 300), printable(loaded.grid.name, 100),
+                      with_commas(loaded.grid.active_sample_count()), loaded.grid.transform.voxel_size,
+                      loaded.grid.half_width_voxels()));
   return loaded;
 }
 

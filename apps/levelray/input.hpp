@@ -5,12 +5,9 @@
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "options.hpp"
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 namespace levelray {
-
-using Json = nlohmann::ordered_json; // keys in the order they are documented
 
 // Measures from its construction.
 class Stopwatch {

@@ -58,7 +58,15 @@ std::string usage_message(const CLI::App& program, const CLI::ParseError& error)
       return "unknown option " + printable(typed, 100) + suggestion(typed, option_names(command)) + help;
     return "unexpected argument \"" + printable(typed, 200) + "\"" + help;
   }
-  return printable(error.what(), 350) + help;
+  // "--threads: Value x not in range 0 to 4096", of numbers that are not whole, too.
+  const std::string text = error.what(), range = " not in range ";
+  const std::size_t value = text.find(": Value "), bounds = text.rfind(range);
+  if (value != std::string::npos && bounds != std::string::npos && value < bounds)
+    return printable(text.substr(0, value) + text.substr(value + 7, bounds - value - 7) +
+                         ": not a whole number from " + text.substr(bounds + range.size()),
+                     350) +
+           help;
+  return printable(text, 350) + help;
 }
 
 // The help of the chosen subcommand or, without one, the program: its examples first, which CLI11 keeps as

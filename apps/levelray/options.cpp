@@ -68,6 +68,19 @@ VdbReadOptions InputOptions::vdb_options() const {
   return options;
 }
 
+Json InputOptions::json() const {
+  return {{"input", path},
+          {"format", format},
+          {"units", units},
+          {"drop_bad", drop_bad},
+          {"salvage", salvage},
+          {"trust_orientation", trust_orientation},
+          {"strict", strict},
+          {"grid", grid},
+          {"trust_input", trust_input},
+          {"max_memory", memory_limit()}};
+}
+
 std::uint64_t InputOptions::memory_limit() const {
   constexpr std::uint64_t unlimited = std::uint64_t{1} << 62; // leaves room for sums
   if (!max_memory.empty()) {
@@ -113,6 +126,15 @@ void ConversionOptions::check() const {
     throw Error(ErrorKind::usage, "--voxel " + printable(voxel, 80) + ": cannot be given in voxels");
   parse_length("--band", band);
   find_name("--sign", sign, sign_method_names());
+}
+
+Json ConversionOptions::json() const {
+  Json options{{"band", band}, {"sign", sign}};
+  if (voxel.empty())
+    options["resolution"] = resolution;
+  else
+    options["voxel"] = voxel;
+  return options;
 }
 
 ConvertOptions ConversionOptions::resolve(const Box3d& bounds, const InputOptions& input) const {

@@ -8,10 +8,13 @@
 #include "lengths.hpp"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 namespace levelray {
+
+using Json = nlohmann::ordered_json; // keys in the order they are documented
 
 // Of every subcommand.
 struct CommonOptions {
@@ -32,6 +35,7 @@ struct InputOptions {
   void add_to(CLI::App& command);
   MeshReadOptions mesh_options() const;
   VdbReadOptions vdb_options() const;
+  Json json() const; // as given
   // In bytes: as given (0: no limit, a number beyond all machines), or four fifths of the machine's memory.
   std::uint64_t memory_limit() const;
 };
@@ -40,11 +44,13 @@ struct InputOptions {
 struct ConversionOptions {
   std::string voxel, band = "3vx", sign = "auto";
   int resolution = 256;
-  bool resolution_given = false;
 
   void add_to(CLI::App& command);
+  // Whether anything differs from the defaults.
+  bool given() const { return !voxel.empty() || band != "3vx" || sign != "auto" || resolution != 256; }
   // Checks what can be checked without the mesh: throws Error(usage).
   void check() const;
+  Json json() const; // as given
   // In the units of a mesh with these bounds.
   ConvertOptions resolve(const Box3d& bounds, const InputOptions& input) const;
 };

@@ -76,11 +76,16 @@ void Render::run() const {
   const RenderStats& stats = rendered.stats;
 
   std::vector<std::string> warnings = loaded.warnings;
-  if (stats.hits == 0) {
-    warnings.push_back(
-        "no ray met the surface; look at --eye and --target, or leave them out to see all of it");
-    print_warning(warnings.back());
-  }
+  const auto warn = [&](const char* text) {
+    warnings.push_back(text);
+    print_warning(text);
+  };
+  if (!picture.aovs.empty() &&
+      std::none_of(picture.outputs.begin(), picture.outputs.end(),
+                   [](const std::string& output) { return extension_of(output) == ".exr"; }))
+    warn("--aov is for .exr files: a .png holds the picture only");
+  if (stats.hits == 0)
+    warn("no ray met the surface; look at --eye and --target, or leave them out to see all of it");
 
   const Stopwatch write;
   const Camera camera(options.camera);
@@ -88,12 +93,16 @@ void Render::run() const {
   const double write_ms = write.ms();
 
   if (common.talks())
-    print(fmt::format("wrote {}: {} x {}, {} rays, {} hits; trace {:.3g} ms, shade {:.3g} ms, total {}\n",
+    print(fmt::format("wrote {}: {} x {}, {}, {}; trace {:.3g} ms, shade {:.3g} ms, total {}\n",
                       fmt::join(picture.outputs, ", "), options.camera.width, options.camera.height,
-                      with_commas(stats.primary_rays + stats.shadow_rays), with_commas(stats.hits),
-                      median(stats.trace_ms), median(stats.shade_ms), duration_text(total.ms() / 1000)));
+                      counted(stats.primary_rays + stats.shadow_rays, "ray", "rays"),
+                      counted(stats.hits, "hit", "hits"), median(stats.trace_ms), median(stats.shade_ms),
+                      duration_text(total.ms() / 1000)));
+  Json all_options = picture.json(options, thread_count());
+  all_options.update(input.json());
+  if (loaded.converted) all_options.update(conversion.json());
   write_json(common, {{"grid", grid_json(loaded.grid)},
-                      {"options", picture.json(options, thread_count())},
+                      {"options", all_options},
                       {"rays", {{"primary", stats.primary_rays}, {"shadow", stats.shadow_rays}}},
                       {"hits", stats.hits},
                       {"ms",

@@ -61,7 +61,9 @@ void PictureOptions::add_to(CLI::App& command) {
       ->type_name("FILE");
   const std::string camera = "Camera", image = "Picture";
   command.add_option("--size", size, "Pixels")->capture_default_str()->type_name("WxH")->group(camera);
-  command.add_option("--eye", eye, "Where the camera stands")->type_name("X,Y,Z")->group(camera);
+  command.add_option("--eye", eye, "Where the camera stands; default: so that all is seen")
+      ->type_name("X,Y,Z")
+      ->group(camera);
   command.add_option("--target", target, "What it looks at; default: the middle of the surface")
       ->type_name("X,Y,Z")
       ->group(camera);

@@ -16,7 +16,7 @@ TEST_CASE("info tells the topology of a mesh") {
   const RunResult text = run_program({"info", folder / "box.obj"});
   CHECK(text.code == 0);
   CHECK_THAT(text.out,
-             Catch::Contains("8 vertices, 10 triangles, open") && Catch::Contains("4 open edges in 1 holes"));
+             Catch::Contains("8 vertices, 10 triangles, open") && Catch::Contains("4 open edges in 1 hole,"));
   const RunResult result = run_program({"info", folder / "box.obj", "--json", "-"});
   REQUIRE(result.code == 0);
   const Json json = Json::parse(result.out);

@@ -52,9 +52,21 @@ TEST_CASE("render's JSON has the documented keys, and times of repetitions as me
         std::set<std::string>{"voxel_size", "dims", "blocks", "active_samples", "bytes"});
   CHECK(keys(json["rays"]) == std::set<std::string>{"primary", "shadow"});
   CHECK(keys(json["ms"]) == std::set<std::string>{"load", "prepare", "trace", "shade", "write", "total"});
-  CHECK(keys(json["options"]) == std::set<std::string>{"size", "eye", "target", "up", "fov", "intersector",
-                                                       "normals", "lights", "shading", "shadows", "ground",
-                                                       "samples", "aov", "repeat", "threads", "output"});
+  CHECK(keys(json["options"]) == std::set<std::string>{"size",        "eye",
+                                                       "target",      "up",
+                                                       "fov",         "intersector",
+                                                       "normals",     "lights",
+                                                       "shading",     "shadows",
+                                                       "ground",      "samples",
+                                                       "aov",         "repeat",
+                                                       "threads",     "output",
+                                                       "input",       "format",
+                                                       "units",       "drop_bad",
+                                                       "salvage",     "trust_orientation",
+                                                       "strict",      "grid",
+                                                       "trust_input", "max_memory",
+                                                       "resolution",  "band",
+                                                       "sign"});
   CHECK(json["rays"]["primary"] == 64 * 48);
   CHECK(json["rays"]["shadow"] > 0);
   CHECK(json["hits"] > 64 * 48 / 10);
@@ -235,6 +247,26 @@ TEST_CASE("a camera that sees nothing says so") {
                                         "30", "--size", "20x20", "--eye", "0,0,9", "--target", "0,0,10"});
   CHECK(result.code == 0);
   CHECK_THAT(result.err, Catch::Contains("no ray met the surface"));
+}
+
+TEST_CASE("options that have no effect are warned of") {
+  const TemporaryFolder folder;
+  const std::string mesh = folder / "ball.obj", vdb = folder / "ball.vdb", png = folder / "ball.png";
+  write_text(mesh, ball_obj(20));
+  REQUIRE(run_program({"convert", mesh, vdb, "--resolution", "30"}).code == 0);
+  const std::vector<std::string> small{"-o", png, "--size", "16x16"};
+  const auto warning_of = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), small.begin(), small.end());
+    const RunResult result = run_program(arguments);
+    CHECK(result.code == 0);
+    return result.err;
+  };
+  CHECK(warning_of({"render", vdb}).empty());
+  CHECK_THAT(warning_of({"render", vdb, "--resolution", "60"}), Catch::Contains("no effect on a .vdb"));
+  CHECK_THAT(warning_of({"render", vdb, "--sign", "flood"}), Catch::Contains("no effect on a .vdb"));
+  CHECK_THAT(warning_of({"render", vdb, "--aov", "t"}), Catch::Contains("--aov is for .exr"));
+  CHECK_THAT(warning_of({"render", mesh, "--resolution", "30", "--grid", "surface"}),
+             Catch::Contains("no effect on a mesh"));
 }
 
 TEST_CASE("a picture beyond --max-memory is refused with 5") {

@@ -129,7 +129,7 @@ TEST_CASE("open edges close the boundary chain") {
   CHECK(r.orientation == Orientation::outward);
   // The cap is the missing face, since the boundary's centroid lies in it.
   CHECK(r.volume == Approx(1));
-  CHECK(warned(prepared, "4 boundary edges in 1 holes"));
+  CHECK(warned(prepared, "4 boundary edges in 1 hole, the largest"));
 }
 
 TEST_CASE("an inverted open box is turned") {
@@ -238,7 +238,7 @@ TEST_CASE("a repeated face of a closed mesh is dropped") {
   CHECK(prepared.mesh.triangles.size() == 12);
   CHECK(prepared.report.non_manifold_edges == 3);
   CHECK(prepared.open_edges.empty());
-  CHECK(warned(prepared, "1 duplicate faces dropped"));
+  CHECK(warned(prepared, "1 duplicate face dropped"));
 }
 
 TEST_CASE("a whole mesh that is there twice is dropped once") {
@@ -296,7 +296,7 @@ TEST_CASE("an opposite pair on a closed body stays as geometry") {
   CHECK(prepared.report.opposite_triangles == 1);
   CHECK(prepared.mesh.triangles.size() == 14);
   CHECK(prepared.open_edges.empty());
-  CHECK(warned(prepared, "1 pairs of opposite faces"));
+  CHECK(warned(prepared, "1 pair of opposite faces"));
 }
 
 TEST_CASE("a T-junction filled with a triangle without area stays closed") {

@@ -85,39 +85,58 @@ void find_open_edges(PreparedMesh& out, const EdgeTable& edges) {
   out.report.longest_hole = largest_part(out.mesh, out.open_edges);
 }
 
+// "1 hole", "2 holes".
+std::string counted(std::uint64_t n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
 void warn(PreparedMesh& out, const Duplicates& duplicates, const PrepareOptions& options) {
   const MeshReport& r = out.report;
   const auto add = [&](std::string text) { out.warnings.push_back(std::move(text)); };
-  if (!out.open_edges.empty())
-    add(fmt::format(
-        "the mesh is not closed: {} boundary edges in {} holes, {} edges without a counterpart, the "
-        "largest hole is {:.4g} wide; inside and outside are a judgement there",
-        r.boundary_edges, r.boundary_loops, out.open_edges.size(), r.longest_hole));
-  if (r.non_manifold_edges > 0 || r.non_manifold_vertices > 0)
-    add(fmt::format("{} edges with more than two faces, {} vertices where fans of faces touch",
-                    r.non_manifold_edges, r.non_manifold_vertices));
+  const auto faces = [](std::uint64_t n) { return counted(n, "face", "faces"); };
+  const auto edges = [](std::uint64_t n) { return counted(n, "edge", "edges"); };
+  if (!out.open_edges.empty()) {
+    std::string text = "the mesh is not closed: ";
+    if (r.boundary_edges > 0)
+      text += counted(r.boundary_edges, "boundary edge", "boundary edges") + " in " +
+              counted(r.boundary_loops, "hole", "holes") + ", ";
+    if (out.open_edges.size() != r.boundary_edges)
+      text += edges(out.open_edges.size()) + " without a counterpart, ";
+    add(text + fmt::format("the largest hole is {:.4g} wide; inside and outside are a judgement there",
+                           r.longest_hole));
+  }
+  if (r.non_manifold_edges > 0 || r.non_manifold_vertices > 0) {
+    std::string text;
+    if (r.non_manifold_edges > 0) text = edges(r.non_manifold_edges) + " with more than two faces";
+    if (r.non_manifold_vertices > 0)
+      text += (text.empty() ? "" : ", ") + counted(r.non_manifold_vertices, "vertex", "vertices") +
+              " where fans of faces touch";
+    add(text);
+  }
   if (r.orientation == Orientation::non_orientable)
     add("a part of the mesh is one-sided and has no inside (Moebius strip)");
   const char* const trusted = "; left as it is, as asked";
-  if (r.orientation == Orientation::mixed || r.winding_clashes > 0)
-    add(fmt::format(
-        "faces are oriented inconsistently, {} edges between two faces clash{}", r.winding_clashes,
-        options.trust_orientation ? trusted : fmt::format("; {} faces turned", r.flipped_triangles)));
-  else if (r.orientation == Orientation::inverted)
-    add(fmt::format("the mesh is inside out{}",
-                    options.trust_orientation ? trusted
-                                              : fmt::format("; all {} faces turned", r.flipped_triangles)));
-  if (duplicates.dropped_same > 0) add(fmt::format("{} duplicate faces dropped", duplicates.dropped_same));
+  if (r.orientation == Orientation::mixed || r.winding_clashes > 0) {
+    std::string text = "faces are oriented inconsistently";
+    if (r.winding_clashes > 0)
+      text += fmt::format(", {} between two faces {}", edges(r.winding_clashes),
+                          r.winding_clashes == 1 ? "clashes" : "clash");
+    add(text + (options.trust_orientation ? trusted : "; " + faces(r.flipped_triangles) + " turned"));
+  } else if (r.orientation == Orientation::inverted) {
+    add("the mesh is inside out" +
+        (options.trust_orientation ? trusted : fmt::format("; all {} faces turned", r.flipped_triangles)));
+  }
+  if (duplicates.dropped_same > 0)
+    add(counted(duplicates.dropped_same, "duplicate face", "duplicate faces") + " dropped");
   if (duplicates.kept_same > 0)
-    add(fmt::format("{} duplicate faces kept, because the mesh is closed with them only",
-                    duplicates.kept_same));
+    add(counted(duplicates.kept_same, "duplicate face", "duplicate faces") +
+        " kept, because the mesh is closed with them only");
   if (duplicates.dropped_opposite > 0)
-    add(fmt::format("{} faces are doubled in both orientations, which encloses nothing; one of each kept",
-                    duplicates.dropped_opposite));
+    add(counted(duplicates.dropped_opposite, "face is", "faces are") +
+        " doubled in both orientations, which encloses nothing; one of each kept");
   if (duplicates.kept_opposite > 0)
-    add(fmt::format("{} pairs of opposite faces have no thickness and enclose nothing",
-                    duplicates.kept_opposite));
-  if (r.degenerate_triangles > 0) add(fmt::format("{} faces have no area", r.degenerate_triangles));
+    add(counted(duplicates.kept_opposite, "pair", "pairs") +
+        " of opposite faces without thickness, which enclose nothing");
 }
 
 } // namespace
