@@ -128,3 +128,17 @@ TEST_CASE("real files of other kinds are refused with the candidates") {
     CHECK(folder.names().empty());
   }
 }
+
+TEST_CASE("info lists the other grids of a file beside one without a surface") {
+  const std::string vdb = LEVELRAY_TESTDATA "/sequence/liquid_mantaflow_vdb/fluid_data_0041.vdb";
+  if (!std::filesystem::exists(vdb)) {
+    WARN("skipped: no test data in " << vdb);
+    return;
+  }
+  const RunResult result = run_program({"info", vdb});
+  INFO(result.err);
+  CHECK(result.code == 0);
+  CHECK_THAT(result.out, Catch::Contains("\"phi_out\": float, class level set: has no surface") &&
+                             Catch::Contains("\"phi_previous\": float, class level set: 18,432 active"));
+  CHECK_THAT(result.err, Catch::Contains("warning: grid \"phi\": gradients"));
+}
