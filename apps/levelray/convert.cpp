@@ -35,7 +35,9 @@ void Convert::run() const {
   const ThreadLimit threads(common.threads);
   const Stopwatch total;
   Progress progress(common.quiet);
-  const LoadedGrid loaded = convert_mesh(input, conversion, common, progress);
+  const LoadedGrid loaded = convert_mesh(input, conversion, common, progress, [](const ConvertPlan& plan) {
+    check_vdb_voxel_size(plan.voxel_size);
+  });
 
   const Stopwatch write;
   VdbWriteOptions options;

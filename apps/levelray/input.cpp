@@ -77,7 +77,8 @@ LoadedMesh load_mesh(const InputOptions& options) {
 }
 
 LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conversion,
-                        const CommonOptions& common, Progress& progress) {
+                        const CommonOptions& common, Progress& progress,
+                        void (*check_plan)(const ConvertPlan&)) {
   conversion.check();
   parse_unit(input.units);
   LoadedMesh mesh = load_mesh(input);
@@ -85,6 +86,7 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
   ConvertedGrid converted;
   try {
     const ConvertPlan plan = plan_conversion(mesh.prepared, options);
+    if (check_plan) check_plan(plan);
     if (common.talks()) announce(input, options, plan, mesh.prepared.report);
 
     std::string stage;

@@ -42,9 +42,10 @@ struct LoadedGrid {
 bool is_vdb(const std::string& path);
 
 // Converts a mesh, telling about it: what it is, what the conversion will take, how it was signed. Warnings
-// are printed once the work has succeeded.
+// are printed once the work has succeeded. `check_plan` may refuse the plan by an Error before any work.
 LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conversion,
-                        const CommonOptions& common, Progress& progress);
+                        const CommonOptions& common, Progress& progress,
+                        void (*check_plan)(const ConvertPlan&) = nullptr);
 
 // Reads a level set, or converts a mesh as above.
 LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& conversion,

@@ -120,3 +120,14 @@ TEST_CASE("conversion that needs more than --max-memory ends with 5 before it be
   CHECK_THAT(result.err, Catch::Contains("memory"));
   CHECK(folder.names() == std::vector<std::string>{"box.obj"});
 }
+
+TEST_CASE("voxels that OpenVDB cannot hold are refused before the work") {
+  const TemporaryFolder folder;
+  write_text(folder / "box.obj", box_obj(3e-3, 2e-3, 1e-3));
+  const RunResult result =
+      run_program({"convert", folder / "box.obj", folder / "box.vdb", "--resolution", "1000"});
+  CHECK(result.code == 5);
+  CHECK(result.out.empty()); // not even the plan
+  CHECK_THAT(result.err, Catch::Contains("OpenVDB cannot represent voxels of 3e-06"));
+  CHECK(folder.names() == std::vector<std::string>{"box.obj"});
+}

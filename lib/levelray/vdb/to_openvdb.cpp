@@ -2,6 +2,7 @@
 
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/vdb/vdb_file.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -155,18 +156,21 @@ Tree::Ptr make_tree(const BlockGrid& grid) {
 
 } // namespace
 
-openvdb::FloatGrid::Ptr to_openvdb(const BlockGrid& grid) {
+void check_vdb_voxel_size(double voxel_size) {
   // OpenVDB 10 (math/Maps.h, ScaleMap) takes a map as singular when the product of its three scales is below
   // 3e-15.
-  const double h = grid.transform.voxel_size;
-  const double smallest = std::cbrt(3 * openvdb::math::Tolerance<double>::value());
-  if (!(h * h * h >= 3 * openvdb::math::Tolerance<double>::value()))
+  const double smallest_volume = 3 * openvdb::math::Tolerance<double>::value();
+  if (!(voxel_size * voxel_size * voxel_size >= smallest_volume))
     throw Error(
         ErrorKind::limit,
         fmt::format("OpenVDB cannot represent voxels of {:.6g}: the smallest are {:.4g}; scale the mesh up, "
                     "for example from metres to millimetres",
-                    h, smallest));
+                    voxel_size, std::cbrt(smallest_volume)));
+}
 
+openvdb::FloatGrid::Ptr to_openvdb(const BlockGrid& grid) {
+  const double h = grid.transform.voxel_size;
+  check_vdb_voxel_size(h);
   openvdb::FloatGrid::Ptr out = openvdb::FloatGrid::create(make_tree(grid));
   openvdb::math::Transform::Ptr transform = openvdb::math::Transform::createLinearTransform(h);
   const Vec3d& o = grid.transform.origin;

@@ -19,6 +19,10 @@ struct VdbWriteOptions {
 // represent.
 void write_vdb(const std::string& path, const BlockGrid& grid, const VdbWriteOptions& options = {});
 
+// Throws Error(limit) for a voxel size, in world units, that OpenVDB cannot represent: what write_vdb would
+// say, to be asked before long work.
+void check_vdb_voxel_size(double voxel_size);
+
 struct VdbReadOptions {
   std::string grid; // name, "name[i]" for the i-th of that name, or "[i]" for the i-th grid; empty: the only
                     // level set
