@@ -4,6 +4,8 @@
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <pty.h>
 #include <sys/resource.h>
@@ -163,7 +165,10 @@ TEST_CASE("progress appears on a terminal only, and is wiped") {
   CHECK(run_program(job).err.empty());
 
   int master = -1, slave = -1;
-  REQUIRE(::openpty(&master, &slave, nullptr, nullptr, nullptr) == 0);
+  if (::openpty(&master, &slave, nullptr, nullptr, nullptr) != 0) {
+    WARN("not tested on a terminal: the system gives no pseudo-terminal (" << std::strerror(errno) << ")");
+    return;
+  }
   RunOptions options;
   options.in_child = [slave] {
     ::setenv("TERM", "xterm", 1);
