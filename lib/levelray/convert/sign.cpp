@@ -34,15 +34,18 @@ double cap_winding_at(const BoundaryWinding& boundary, const Vec3i& sample) {
   return boundary.exact(p);
 }
 
-// The caps' winding number in a ball that no cap meets, when one value decides for all of it.
-//
-// Very many caps are the pieces of a surface that is cracked everywhere. Their winding number is nearly
-// constant away from them because they cancel, which no bound on their sum shows; there the value at the
-// centre decides when it is `margin` away from one half.
+// The caps' winding number in a ball, and whether that one value decides for all of it.
 struct BallWinding {
   double value = 0;
   bool decided = true;
 };
+
+// `center` and `radius` in voxels, of a ball that no cap meets.
+//
+// Very many caps are the pieces of a surface that is cracked everywhere. Their winding number is nearly
+// constant away from them because they cancel, which no bound on their sum shows; there the value at the
+// centre decides when it is `margin` away from one half. The margins are judgements, not bounds: a cracked
+// surface is near 0 or 1 off the surface, and what is wider open goes on to smaller balls and to samples.
 BallWinding cap_winding_around(const BoundaryWinding& boundary, const Vec3d& center, double radius,
                                double margin) {
   if (boundary.empty()) return {};

@@ -23,8 +23,7 @@ struct NodeSides {
 // Which lattice-edge counting a method needs.
 SheetCounting counting_for(SignMethod method);
 
-// The sides of all samples of table entry `n`. `pseudonormal_sides` (see pseudonormal_sign.hpp) is used by
-// that method only. Never touches a distance.
+// The sides of all samples of table entry `n`. Never touches a distance.
 NodeSides node_sides(const Band& band, const Regions& regions, const BoundaryWinding& boundary,
                      SignMethod method, std::size_t n);
 
