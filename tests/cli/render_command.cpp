@@ -1,33 +1,14 @@
 #include "support/catch.hpp"
 #include "support/mesh_files.hpp"
 #include "support/read_exr.hpp"
+#include "support/read_output.hpp"
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
 using namespace levelray::test;
-using Json = nlohmann::json;
-
-namespace {
-
-std::set<std::string> keys(const Json& json) {
-  std::set<std::string> names;
-  for (const auto& [name, value] : json.items()) names.insert(name);
-  return names;
-}
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream out;
-  out << file.rdbuf();
-  return out.str();
-}
-
-} // namespace
 
 TEST_CASE("render's JSON has the documented keys, and times of repetitions as median, min and max") {
   const TemporaryFolder folder;
