@@ -2,6 +2,7 @@
 // readers' own tests know the messages; this is about what the program makes of them.
 #include "support/catch.hpp"
 #include "support/mesh_files.hpp"
+#include "support/read_output.hpp"
 #include "support/run_program.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -90,6 +91,28 @@ TEST_CASE("a grid beyond every limit ends with 5 before memory is taken") {
   const TemporaryFolder folder;
   write_text(folder / "wide.obj", box_obj(1e7, 1, 1));
   check_refused(folder / "wide.obj", {"wide.obj", "", "wide.obj", 5, {"--voxel", "1e-6"}}, folder);
+}
+
+TEST_CASE("sizes that numbers cannot hold end with 5 and not with a wrong picture") {
+  const TemporaryFolder folder;
+  for (const double size : {1e300, 1e60, 1e40, 1e-40, 1e-60, 1e-300}) {
+    write_text(folder / "box.obj", box_obj(size, size, size));
+    check_refused(folder / "box.obj", {"box.obj", "", "scale the mesh", 5}, folder);
+  }
+  // Others are as good as any: a power of two changes no digit of any number, hence no pixel.
+  const auto picture = [&](double size) {
+    write_text(folder / "box.obj", box_obj(size, 0.5 * size, size));
+    const RunResult result = run_program(
+        {"render", folder / "box.obj", "-o", folder / "out.png", "--resolution", "16", "--size", "32x32"});
+    INFO(result.err);
+    CHECK(result.code == 0);
+    return content_of(folder / "out.png");
+  };
+  const std::string expected = picture(1);
+  for (const double size : {0x1p100, 0x1p70, 0x1p-90}) {
+    CAPTURE(size);
+    CHECK(picture(size) == expected);
+  }
 }
 
 TEST_CASE("level sets that cannot be used end with 3") {

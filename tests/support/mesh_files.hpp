@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <sstream>
 #include <string>
 
 namespace levelray::test {
@@ -14,11 +15,11 @@ inline void write_text(const std::string& path, const std::string& text) {
 
 // A closed, outward box from (0,0,0) to (x,y,z), of 12 triangles.
 inline std::string box_obj(double x, double y, double z) {
-  std::string text;
+  std::ostringstream text;
+  text.precision(17);
   for (int c = 0; c < 8; ++c)
-    text += "v " + std::to_string(c & 1 ? x : 0) + " " + std::to_string(c & 2 ? y : 0) + " " +
-            std::to_string(c & 4 ? z : 0) + "\n";
-  return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    text << "v " << (c & 1 ? x : 0) << " " << (c & 2 ? y : 0) << " " << (c & 4 ? z : 0) << "\n";
+  return text.str() + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
 }
 
 // A closed, outward ball of radius 1 around the origin, of 2 n^2 quads less the poles.

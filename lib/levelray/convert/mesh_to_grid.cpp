@@ -155,6 +155,14 @@ ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& opti
   plan.voxel_size = voxel_size_of(mesh, options);
   const Vec3d size = mesh.report.bounds.size() / plan.voxel_size;
   const double band = 2 * options.half_width_voxels;
+  // Samples are floats in world units: distances up to the band's width and what lies beyond must stay
+  // finite, and 2^-24 of a voxel must not be denormal (below 2^-126).
+  if (!(plan.voxel_size >= 0x1p-100 && plan.voxel_size <= 0x1p100))
+    throw Error(
+        ErrorKind::limit,
+        fmt::format("voxels of {:.4g}: distances are single precision numbers, which hold voxels from "
+                    "{:.2g} to {:.2g}; scale the mesh",
+                    plan.voxel_size, 0x1p-100, 0x1p100));
 
   // A sheet of area A has A * 2H samples within H, and blocks that meet the band hold about as many as a band
   // wider by 4.3 would, measured on closed meshes. Where the band is wide against the mesh, its rounded edges

@@ -179,6 +179,14 @@ PreparedMesh prepare_mesh(const TriangleMesh& mesh, const PrepareOptions& option
   }
   out.mesh = std::move(welded.mesh);
   for (const Vec3d& v : out.mesh.vertices) report.bounds.extendBy(v);
+  // Volumes and squares of areas are third and fourth powers of lengths: doubles hold them, with room for
+  // triangles far smaller than the mesh, for lengths from 1e-50 to 1e50.
+  const Vec3d size = report.bounds.size();
+  if (const double side = std::max({size.x, size.y, size.z}); !(side >= 1e-50 && side <= 1e50))
+    throw Error(
+        ErrorKind::limit,
+        fmt::format("the mesh's longest side is {:.4g}, which must be from 1e-50 to 1e50; scale the mesh",
+                    side));
   const std::uint64_t without_area = count_without_area(out.mesh);
   if (without_area == out.mesh.triangles.size())
     throw Error(ErrorKind::bad_input,

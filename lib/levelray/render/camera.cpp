@@ -99,9 +99,11 @@ CameraSettings framing_camera(const SupportFunction& support, const Vec3d& centr
   const Vec3d to_eye = (front * std::cos(azimuth) + side * std::sin(azimuth)) * std::cos(elevation) +
                        settings.up * std::sin(elevation);
 
-  settings.target = centre;
-  settings.eye = centre + to_eye;
+  // The axes do not depend on the place; far from the origin a unit step to the eye would be rounded away.
+  settings.target = Vec3d(0);
+  settings.eye = to_eye;
   const Camera view(settings);
+  settings.target = centre;
 
   // A point at (x, y, z) from the centre, in camera axes, is seen within the usable half angles of tangents k
   // from distance D when |x| <= k_x (D + z) and |y| <= k_y (D + z): D is the largest of four linear
