@@ -14,7 +14,7 @@ const std::vector<std::string>& shading_names() {
 Material shading_material(std::string_view name) {
   Material material;
   if (name == "phong")
-    material.specular = 0.18;
+    material.kind = MaterialKind::phong, material.specular = 0.18;
   else if (name != "lambert")
     throw Error(ErrorKind::usage, "unknown shading \"" + std::string(name) + "\"; choose lambert or phong");
   return material;

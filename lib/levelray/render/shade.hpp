@@ -1,19 +1,13 @@
 // Local shading of a surface point: Lambert's cosine law and Phong's highlight.
 #pragma once
 
-#include "levelray/core/vec.hpp"
+#include "levelray/render/material.hpp"
 
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace levelray {
-
-struct Material {
-  Vec3d albedo{0.72, 0.72, 0.70}; // scene-linear, [0,1]
-  double specular = 0;            // strength of the highlight
-  double exponent = 32;           // its width: larger is narrower
-};
 
 // Ambient light, as the intensity of DirectionalLight.
 inline constexpr double ambient_intensity = 0.06;
