@@ -51,18 +51,20 @@ void Convert::run() const {
                       loaded.grid.name, with_commas(loaded.grid.active_sample_count()),
                       bytes_text(std::filesystem::file_size(output)), duration_text(total.ms() / 1000)));
   const ConvertReport& report = *loaded.converted;
-  write_json(common, {{"input", mesh_json(*loaded.mesh)},
-                      {"sign",
-                       {{"method", sign_method_names()[static_cast<std::size_t>(report.sign)]},
-                        {"reason", report.sign_reason}}},
-                      {"grid", grid_json(loaded.grid)},
-                      {"ms",
-                       {{"read", loaded.read_ms},
-                        {"distance", report.distance_ms},
-                        {"sign", report.sign_ms},
-                        {"write", write_ms},
-                        {"total", total.ms()}}},
-                      {"warnings", loaded.warnings}});
+  Json json = {{"input", mesh_json(*loaded.mesh)},
+               {"sign",
+                {{"method", sign_method_names()[static_cast<std::size_t>(report.sign)]},
+                 {"reason", report.sign_reason}}},
+               {"grid", grid_json(loaded.grid)},
+               {"ms",
+                {{"read", loaded.read_ms},
+                 {"distance", report.distance_ms},
+                 {"sign", report.sign_ms},
+                 {"write", write_ms},
+                 {"total", total.ms()}}},
+               {"warnings", loaded.warnings}};
+  add_field_facts(json, loaded);
+  write_json(common, json);
 }
 
 } // namespace

@@ -115,7 +115,11 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
                          loaded.converted->warnings.end());
   loaded.read_ms = mesh.read_ms;
   for (const std::string& warning : loaded.warnings) print_warning(warning);
-  if (common.talks())
+  if (const double thickness = loaded.converted->thickness; common.talks() && thickness > 0)
+    print(fmt::format("sheet: {:.4g}{} thick ({:.3g} voxels), half of it on each side of the mesh\n",
+                      thickness, input.units.empty() ? "" : " " + input.units,
+                      thickness / loaded.grid.transform.voxel_size));
+  else if (common.talks())
     print(fmt::format("sign: {} ({})\n",
                       sign_method_names()[static_cast<std::size_t>(loaded.converted->sign)],
                       loaded.converted->sign_reason));
@@ -132,7 +136,8 @@ LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& convers
   loaded.warnings = std::move(file.warnings);
   loaded.read_ms = watch.ms();
   if (conversion.given())
-    loaded.warnings.push_back("--resolution, --voxel, --band and --sign are for meshes: no effect on a .vdb");
+    loaded.warnings.push_back(
+        "--resolution, --voxel, --band, --sign and --thicken are for meshes: no effect on a .vdb");
   for (const std::string& warning : loaded.warnings) print_warning(warning);
   if (common.talks())
     print(fmt::format("{}: grid \"{}\", {} active samples, voxel {:.4g}, band {:.3g} voxels\n",
@@ -169,6 +174,12 @@ Json grid_json(const BlockGrid& grid) {
           {"blocks", grid.block_count()},
           {"active_samples", grid.active_sample_count()},
           {"bytes", grid.bytes()}};
+}
+
+void add_field_facts(Json& json, const LoadedGrid& loaded) {
+  if (loaded.converted && loaded.converted->thickness > 0)
+    json["sheet"] = {{"thickness", loaded.converted->thickness},
+                     {"voxels", loaded.converted->thickness / loaded.grid.transform.voxel_size}};
 }
 
 void write_json(const CommonOptions& common, const Json& json) {

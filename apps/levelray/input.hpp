@@ -57,6 +57,9 @@ std::string describe_mesh(const MeshReport& report, const std::string& units);
 Json mesh_json(const MeshReport& report); // the `input` of convert
 Json grid_json(const BlockGrid& grid);    // {voxel_size, dims, blocks, active_samples, bytes}
 
+// Adds what was done to make the field, when something was: `sheet` {thickness, voxels} of --thicken.
+void add_field_facts(Json& json, const LoadedGrid& loaded);
+
 // Writes to --json's file or standard output, if asked.
 void write_json(const CommonOptions& common, const Json& json);
 

@@ -115,9 +115,17 @@ void ConversionOptions::add_to(CLI::App& command) {
       ->capture_default_str()
       ->type_name("LENGTH")
       ->group(group);
-  command.add_option("--sign", sign, "What is inside: " + join(sign_method_names()))
-      ->capture_default_str()
-      ->type_name("NAME")
+  auto* by_sign = command.add_option("--sign", sign, "What is inside: " + join(sign_method_names()))
+                      ->capture_default_str()
+                      ->type_name("NAME")
+                      ->group(group);
+  command
+      .add_option(
+          "--thicken", thicken,
+          "Make a sheet of all within R of the mesh (2R thick), for cloth and other open meshes: a plain "
+          "number, mm, cm, m, in and % as for --voxel, or vx in voxels")
+      ->excludes(by_sign)
+      ->type_name("R")
       ->group(group);
 }
 
@@ -125,6 +133,7 @@ void ConversionOptions::check() const {
   if (!voxel.empty() && parse_length("--voxel", voxel).unit == Length::Unit::voxels)
     throw Error(ErrorKind::usage, "--voxel " + printable(voxel, 80) + ": cannot be given in voxels");
   parse_length("--band", band);
+  if (!thicken.empty()) parse_length("--thicken", thicken);
   find_name("--sign", sign, sign_method_names());
 }
 
@@ -134,6 +143,7 @@ Json ConversionOptions::json() const {
     options["resolution"] = resolution;
   else
     options["voxel"] = voxel;
+  if (!thicken.empty()) options["thicken"] = thicken;
   return options;
 }
 
@@ -158,6 +168,8 @@ ConvertOptions ConversionOptions::resolve(const Box3d& bounds, const InputOption
   options.half_width_voxels = width.unit == Length::Unit::plain || width.unit == Length::Unit::voxels
                                   ? width.value
                                   : resolve_length("--band", width, scale) / scale.voxel_size;
+  if (!thicken.empty())
+    options.thicken = resolve_length("--thicken", parse_length("--thicken", thicken), scale);
   options.sign = static_cast<SignMethod>(find_name("--sign", sign, sign_method_names()));
   options.max_memory = input.memory_limit();
   return options;

@@ -42,12 +42,14 @@ struct InputOptions {
 
 // How a mesh becomes a grid.
 struct ConversionOptions {
-  std::string voxel, band = "3vx", sign = "auto";
+  std::string voxel, band = "3vx", sign = "auto", thicken;
   int resolution = 256;
 
   void add_to(CLI::App& command);
   // Whether anything differs from the defaults.
-  bool given() const { return !voxel.empty() || band != "3vx" || sign != "auto" || resolution != 256; }
+  bool given() const {
+    return !voxel.empty() || band != "3vx" || sign != "auto" || resolution != 256 || !thicken.empty();
+  }
   // Checks what can be checked without the mesh: throws Error(usage).
   void check() const;
   Json json() const; // as given

@@ -101,18 +101,20 @@ void Render::run() const {
   Json all_options = picture.json(options, thread_count());
   all_options.update(input.json());
   if (loaded.converted) all_options.update(conversion.json());
-  write_json(common, {{"grid", grid_json(loaded.grid)},
-                      {"options", all_options},
-                      {"rays", {{"primary", stats.primary_rays}, {"shadow", stats.shadow_rays}}},
-                      {"hits", stats.hits},
-                      {"ms",
-                       {{"load", load_ms},
-                        {"prepare", times_json(stats.prepare_ms)},
-                        {"trace", times_json(stats.trace_ms)},
-                        {"shade", times_json(stats.shade_ms)},
-                        {"write", write_ms},
-                        {"total", total.ms()}}},
-                      {"warnings", warnings}});
+  Json json = {{"grid", grid_json(loaded.grid)},
+               {"options", all_options},
+               {"rays", {{"primary", stats.primary_rays}, {"shadow", stats.shadow_rays}}},
+               {"hits", stats.hits},
+               {"ms",
+                {{"load", load_ms},
+                 {"prepare", times_json(stats.prepare_ms)},
+                 {"trace", times_json(stats.trace_ms)},
+                 {"shade", times_json(stats.shade_ms)},
+                 {"write", write_ms},
+                 {"total", total.ms()}}},
+               {"warnings", warnings}};
+  add_field_facts(json, loaded);
+  write_json(common, json);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "levelray/convert/mesh_to_grid.hpp"
 
 #include "levelray/convert/assemble.hpp"
+#include "levelray/convert/thicken.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
 
@@ -90,6 +91,25 @@ double voxel_size_of(const PreparedMesh& mesh, const ConvertOptions& options) {
   return options.voxel_size;
 }
 
+// The sheet's radius in voxels; 0 where no sheet is asked for.
+double thicken_voxels(const ConvertOptions& options, double voxel_size) {
+  if (options.thicken == 0) return 0;
+  if (!(options.thicken > 0) || !std::isfinite(options.thicken))
+    throw Error(ErrorKind::usage,
+                fmt::format("a sheet's radius must be a finite number > 0, not {}", options.thicken));
+  if (options.sign != SignMethod::automatic && options.sign != SignMethod::unsigned_distance)
+    throw Error(ErrorKind::usage,
+                "a sheet is on both sides of the mesh: signs cannot be chosen for it (leave out --sign)");
+  const double radius = options.thicken / voxel_size;
+  if (!(2 * radius >= least_thickness_voxels))
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("a sheet {:.4g} thick is thinner than a voxel of {:.4g} and would be lost in places; try "
+                    "--thicken {:.3g} or --voxel {:.3g}",
+                    2 * options.thicken, voxel_size, voxel_size, options.thicken));
+  return radius;
+}
+
 // Why the signs are what they are, in words for the user.
 std::string sign_reason(const PreparedMesh& mesh, SignMethod asked, SignMethod used) {
   const std::string facts =
@@ -113,21 +133,25 @@ std::string sign_reason(const PreparedMesh& mesh, SignMethod asked, SignMethod u
 
 void check_inside(const PreparedMesh& mesh, const BlockGrid& grid, double voxel_size,
                   std::uint64_t thin_places, ConvertReport& report) {
+  if (report.thickness > 0 && report.inside_samples == 0)
+    throw Error(ErrorKind::bad_input,
+                fmt::format("the sheet falls between the samples; try --thicken {:.3g} or --voxel {:.3g}",
+                            voxel_size, report.thickness / 4));
   if (report.sign == SignMethod::unsigned_distance) return;
   if (report.inside_samples == 0)
-    throw Error(ErrorKind::bad_input,
-                fmt::format("no enclosed volume: no sample lies inside ({}); use --sign unsigned, a closed "
-                            "mesh, or a voxel smaller than {:.4g}",
-                            mesh.report.closed
-                                ? "the mesh is closed but thinner than a voxel, or has no thickness"
-                                : fmt::format("the mesh has {} open edges", mesh.open_edges.size()),
-                            voxel_size));
+    throw Error(
+        ErrorKind::bad_input,
+        fmt::format("no enclosed volume: no sample lies inside ({}); use --thicken 1vx for a thin sheet, "
+                    "--sign unsigned, a closed mesh, or a voxel smaller than {:.4g}",
+                    mesh.report.closed ? "the mesh is closed but thinner than a voxel, or has no thickness"
+                                       : fmt::format("the mesh has {} open edges", mesh.open_edges.size()),
+                    voxel_size));
   const double share =
       static_cast<double>(report.inside_samples) / static_cast<double>(grid.active_sample_count());
   if (!mesh.open_edges.empty() && share < 0.2)
     report.warnings.push_back(fmt::format(
         "only {:.1f} % of the band lies inside: much of this open surface bounds no volume and is lost; "
-        "--sign unsigned keeps its distances",
+        "--thicken 1vx makes a thin sheet of it",
         100 * share));
   // A few grazed bumps and creases are in every mesh; parts that are thin meet an edge twice in a good share
   // of their blocks.
@@ -153,8 +177,14 @@ ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& opti
                             options.half_width_voxels));
   ConvertPlan plan;
   plan.voxel_size = voxel_size_of(mesh, options);
+  const double radius = thicken_voxels(options, plan.voxel_size);
+  if (!(radius + options.half_width_voxels <= 1000))
+    throw Error(ErrorKind::usage,
+                fmt::format("a sheet {:.4g} thick has {:.4g} voxels from side to side; at most 1990 "
+                            "are supported",
+                            2 * options.thicken, 2 * radius));
   const Vec3d size = mesh.report.bounds.size() / plan.voxel_size;
-  const double band = 2 * options.half_width_voxels;
+  const double band = 2 * (options.half_width_voxels + radius); // distances are computed for all of a sheet
   // Samples are floats in world units: distances up to the band's width and what lies beyond must stay
   // finite, and 2^-24 of a voxel must not be denormal (below 2^-126).
   if (!(plan.voxel_size >= 0x1p-100 && plan.voxel_size <= 0x1p100))
@@ -214,16 +244,22 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   };
   ConvertedGrid result;
   ConvertReport& report = result.report;
-  report.sign = options.sign == SignMethod::automatic ? SignMethod::winding : options.sign;
-  report.sign_reason = sign_reason(mesh, options.sign, report.sign);
+  report.sign = options.thicken > 0                     ? SignMethod::unsigned_distance
+                : options.sign == SignMethod::automatic ? SignMethod::winding
+                                                        : options.sign;
+  report.sign_reason = options.thicken > 0 ? "a sheet is where the distance is below its radius"
+                                           : sign_reason(mesh, options.sign, report.sign);
+  report.thickness = 2 * options.thicken;
 
   // Distances: unsigned, per node, with what the sheets separate.
   const Clock::time_point distance_start = Clock::now();
   const GridTransform transform = transform_for(mesh.report.bounds, plan.voxel_size);
   const VoxelMesh voxel_mesh = make_voxel_mesh(mesh, transform);
-  const double reach = std::max(options.half_width_voxels, sign_reach);
+  const double radius = thicken_voxels(options, plan.voxel_size);
+  const double half_width = options.half_width_voxels + radius;
+  const double reach = std::max(half_width, sign_reach);
   BandOptions band_options;
-  band_options.half_width_voxels = options.half_width_voxels;
+  band_options.half_width_voxels = half_width;
   band_options.counting = counting_for(report.sign);
   band_options.find_components = report.sign != SignMethod::unsigned_distance;
 
@@ -250,11 +286,17 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   const BoundaryWinding boundary(voxel_mesh);
   Regions regions;
   if (band_options.find_components) regions = join_regions(band, band_options.counting);
-  std::vector<NodeSides> sides(band.box.count());
-  parallel_for(sides.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t n = begin; n < end; ++n) sides[n] = node_sides(band, regions, boundary, report.sign, n);
-    progress("sign", static_cast<double>(end) / static_cast<double>(sides.size()));
-  });
+  std::vector<NodeSides> sides;
+  if (radius > 0) {
+    sides = thicken_band(band, radius);
+  } else {
+    sides.resize(band.box.count());
+    parallel_for(sides.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n)
+        sides[n] = node_sides(band, regions, boundary, report.sign, n);
+      progress("sign", static_cast<double>(end) / static_cast<double>(sides.size()));
+    });
+  }
   report.sign_ms = ms_since(sign_start);
 
   std::uint64_t thin_places = 0;
@@ -262,6 +304,13 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   const Clock::time_point assemble_start = Clock::now();
   result.grid = assemble_grid(band, sides, transform, options.half_width_voxels, &report.inside_samples);
   report.distance_ms += ms_since(assemble_start);
+  if (radius > 0 && 2 * radius < safe_thickness_voxels * (1 - 1e-9))
+    report.warnings.push_back(
+        fmt::format("the sheet is {:.3g} voxels thick; below {:.3g} it may have holes: try "
+                    "--thicken {:.3g} or --voxel {:.3g}",
+                    2 * radius, safe_thickness_voxels, plan.voxel_size, options.thicken));
+  if (radius > 0 && mesh.open_edges.empty() && mesh.report.closed)
+    report.warnings.push_back("the mesh is closed: its sheet is a hollow shell along the surface");
   if (boundary.many() && (report.sign == SignMethod::winding || report.sign == SignMethod::winding_abs))
     report.warnings.push_back(fmt::format("the surface has {} open edges: its winding number was estimated, "
                                           "and may decide wrongly where it is near one "

@@ -17,6 +17,9 @@ struct ConvertOptions {
   int resolution = 256;         // voxels along the longest side
   double half_width_voxels = 3; // >= 1
   SignMethod sign = SignMethod::automatic;
+  // 0: the mesh bounds solids. > 0 (world units): the result is the sheet of all points within this distance
+  // of the mesh, twice as thick, whatever the mesh's topology; `sign` must be automatic or unsigned.
+  double thicken = 0;
   std::uint64_t max_memory = 0; // bytes; 0: no limit
   std::function<void(const char* stage, double done)>
       progress; // called from any thread, done in [0,1]; may be empty
@@ -35,6 +38,7 @@ struct ConvertReport {
   SignMethod sign = SignMethod::winding; // the method used
   std::string sign_reason;               // why, in words
   std::uint64_t inside_samples = 0;      // active samples inside
+  double thickness = 0;                  // of the sheet, world units; 0: none was asked for
   double distance_ms = 0, sign_ms = 0;
   std::vector<std::string> warnings;
 };
@@ -44,14 +48,15 @@ struct ConvertedGrid {
   ConvertReport report;
 };
 
-// Throws Error(usage) for sizes that make no sense, Error(limit) where the grid would exceed max_memory or
-// the index range.
+// Throws Error(usage) for sizes that make no sense and sheets thinner than a voxel, Error(limit) where the
+// grid would exceed max_memory or the index range.
 ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& options);
 
 // Every sample within the half-width of the mesh holds its Euclidean distance to the nearest triangle, exact
 // to rounding (convert/README.md derives 1e-5 voxel), with a sign decided apart. The result does not depend
-// on the number of threads. Throws Error(bad_input) where no volume is enclosed (unless `unsigned`), and what
-// plan_conversion throws.
+// on the number of threads. With `thicken` = R the samples hold that distance less R, for all within the
+// half-width of the sheet's boundary. Throws Error(bad_input) where no volume is enclosed (unless `unsigned`
+// or thickened), and what plan_conversion throws.
 ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& options);
 
 } // namespace levelray
