@@ -25,7 +25,7 @@ DOORS = [
     (r"(oneapi/)?tbb/", r"lib/levelray/core/parallel\.cpp|lib/levelray/vdb/|tests/", "TBB", "core/parallel"),
     (r"OpenMesh/", r"tests/", "OpenMesh", "tests"),
     (r"(OpenEXR/)?Imf|(OpenEXR/)?Iex|png\.h|setjmp\.h", r"lib/levelray/io/|tests/", "OpenEXR and libpng", "io/"),
-    (r"nlohmann/", r"apps/|tests/", "JSON", "apps and tests"),
+    (r"nlohmann/", r"lib/levelray/io/json_parser\.cpp|apps/|tests/", "JSON", "io/json_parser.cpp, apps and tests"),
     (r"openvdb/", r"lib/levelray/vdb/|tests/", "OpenVDB", "vdb/ and tests"),
     (r"CLI/", r"apps/|tests/bench/", "CLI11", "apps and tests/bench"),
     (r"embree", r"tests/", "Embree", "tests"),
