@@ -26,7 +26,7 @@ const std::string scene_text = R"({
         "translate": [1, 2, 3], "rotate": {"axis": [0, 0, 2], "degrees": -90}, "scale": 0.5,
         "keys": [{"frame": 1, "rotate": {"degrees": 0}}, {"frame": 9, "scale": 2, "translate": [0, 0, 0]}]
       },
-      "material": {"kind": "glass", "color": [1, 0.9, 0.8], "ior": 1.33}
+      "material": {"kind": "glass", "tint": [1, 0.9, 0.8], "ior": 1.33}
     },
     {"mesh": "floor.obj", "convert": {"voxel": "5mm", "band": "4vx", "sign": "winding", "units": "m"}}
   ],
@@ -34,9 +34,9 @@ const std::string scene_text = R"({
     {"kind": "directional", "direction": [0, 2, 0], "intensity": 2, "color": [1, 1, 0.5]},
     {"kind": "point", "position": [1, 1, 1], "shadows": false}
   ],
-  "sky": {"intensity": 0.2, "visible": true},
+  "ambient": 0.06, "sky": {"radiance": [0.1, 0.2, 0.3], "visible": true},
   "ground": {"height": -1},
-  "ambient_occlusion": {"samples": 64, "distance": 0.25},
+  "ambient_occlusion": {"samples": 64, "radius": 0.25},
   "render": {"intersector": "midpoint", "normals": "difference-of-interpolations", "max_depth": 3},
   "outputs": ["out/beauty.####.exr"],
   "limits": {"memory": "8GiB", "frame_seconds": 600}
@@ -86,9 +86,13 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(scene.lights[0].intensity == 2);
   CHECK(scene.lights[1].kind == "point");
   CHECK(!scene.lights[1].shadows);
+  CHECK(scene.ambient == 0.06);
+  CHECK(scene.sky->radiance == Vec3d(0.1, 0.2, 0.3));
   CHECK(scene.sky->visible);
   CHECK(scene.ground->height == -1);
+  CHECK(scene.ground->material.kind == "diffuse");
   CHECK(scene.ambient_occlusion->samples == 64);
+  CHECK(scene.ambient_occlusion->radius == 0.25);
   CHECK(scene.render.intersector == "midpoint");
   CHECK(scene.render.max_depth == 3);
   CHECK(scene.outputs == std::vector<std::string>{"out/beauty.####.exr"});

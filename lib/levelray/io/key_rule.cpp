@@ -7,6 +7,7 @@ namespace levelray {
 namespace {
 
 std::string with_range(const std::string& what, const Rule& rule) {
+  if (rule.least == rule.most) return fmt::format("the number {}", rule.least);
   const std::string range = range_text(rule);
   return range.empty() ? what : what + " " + range;
 }

@@ -71,15 +71,25 @@ JsonValue KeySchema::schema() const {
 
 void KeyTable::row(const std::string& name, const std::string& wanted, bool required,
                    const JsonValue* standard, const char* doc) {
-  std::string value = required ? "required" : "";
+  Row row{path_ + name, wanted, required ? "required" : "", doc, {}};
   if (standard && !required && standard->kind != JsonValue::Kind::object)
-    value = "`" + compact_json_text(*standard) + "`";
-  rows_ += fmt::format("| `{}{}`{} | {} | {} | {} |\n", path_, name, kind_.empty() ? "" : " of " + kind_,
-                       wanted, value, doc);
+    row.standard = "`" + compact_json_text(*standard) + "`";
+  if (name != "kind" && !kind_.empty()) row.kinds.push_back(kind_);
+  for (Row& other : rows_)
+    if (other.same(row)) {
+      other.kinds.insert(other.kinds.end(), row.kinds.begin(), row.kinds.end());
+      if (other.kinds.size() == kinds_) other.kinds.clear(); // of all of them
+      return;
+    }
+  rows_.push_back(std::move(row));
 }
 
-void KeyTable::kind_row() {
-  rows_ += fmt::format("| `{}kind` | `\"{}\"` | required | |\n", path_, kind_);
+std::string KeyTable::text(const std::vector<Row>& rows) {
+  std::string text = "| key | holds | default | what |\n|---|---|---|---|\n";
+  for (const Row& row : rows)
+    text += fmt::format("| `{}`{}{} | {} | {} | {} |\n", row.key, row.kinds.empty() ? "" : " of ",
+                        fmt::join(row.kinds, ", "), row.wanted, row.standard, row.doc);
+  return text;
 }
 
 } // namespace levelray

@@ -92,10 +92,19 @@ JsonValue schema_of(const std::vector<T>*, const Rule& rule) {
   return schema;
 }
 
-// Rows "| key | holds | default | what |" of a struct and all below it.
+// Rows of the reference: what a struct and all below it may hold.
 class KeyTable {
  public:
-  KeyTable(std::string& rows, std::string path, std::string kind)
+  struct Row {
+    std::string key, wanted, standard, doc;
+    std::vector<std::string> kinds; // for which it is there; empty: always
+
+    bool same(const Row& other) const {
+      return key == other.key && wanted == other.wanted && standard == other.standard && doc == other.doc;
+    }
+  };
+
+  KeyTable(std::vector<Row>& rows, std::string path, std::string kind)
       : rows_(rows), path_(std::move(path)), kind_(std::move(kind)) {}
 
   template <class T>
@@ -106,24 +115,29 @@ class KeyTable {
         doc);
     below(path_ + name, static_cast<const T*>(nullptr));
   }
-  void kind(std::string&, const std::vector<std::string>&, const char*) {}
+  void kind(std::string&, const std::vector<std::string>& names, const char* doc) {
+    row("kind", wanted_text(static_cast<const std::string*>(nullptr), one_of_names(names)), true, nullptr,
+        doc);
+    kinds_ = names.size();
+  }
   void one_of(const std::vector<std::string>&) {}
   void require(bool, const char*, const char*) {}
 
-  // Appends the rows of all kinds of T.
+  // Appends the rows of T, those of its kinds together.
   template <class T>
-  static void add(std::string& rows, const std::string& path) {
+  static void add(std::vector<Row>& rows, const std::string& path) {
     for_each_kind<T>([&](T& value, const std::string& kind) {
       KeyTable table(rows, path, kind);
-      if (!kind.empty()) table.kind_row();
       describe(table, value);
     });
   }
 
+  // "| key | holds | default | what |"
+  static std::string text(const std::vector<Row>& rows);
+
  private:
   void row(const std::string& name, const std::string& wanted, bool required, const JsonValue* standard,
            const char* doc);
-  void kind_row();
 
   template <class T>
   void below(const std::string& path, const std::optional<T>*) {
@@ -139,8 +153,9 @@ class KeyTable {
       add<T>(rows_, path + ".");
   }
 
-  std::string& rows_;
+  std::vector<Row>& rows_;
   const std::string path_, kind_;
+  std::size_t kinds_ = 0;
 };
 
 } // namespace levelray

@@ -2,6 +2,8 @@
 
 #include "levelray/core/error.hpp"
 
+#include <ImathMatrix.h>
+#include <ImathQuat.h>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -145,18 +147,23 @@ CameraSettings camera_at(const SceneFile& scene, double frame) {
   return settings;
 }
 
-Placement placement_at(const TransformFile& transform, double frame) {
+Similarity placement_at(const TransformFile& transform, double frame) {
   const bool smooth = transform.interpolation == "smooth";
-  Placement placement;
-  placement.translate =
+  Similarity placement;
+  placement.translation =
       at(track_of(transform.keys, &TransformKey::translate), transform.translate, frame, smooth);
-  placement.rotation = at(track_of(transform.keys, &TransformKey::rotate), transform.rotate, frame, smooth);
+  // Imath's vectors are rows: a matrix's rows are the images of the axes.
+  const Imath::M33d axes =
+      at(track_of(transform.keys, &TransformKey::rotate), transform.rotate, frame, smooth).toMatrix33();
+  placement.x_axis = Vec3d(axes[0][0], axes[0][1], axes[0][2]);
+  placement.y_axis = Vec3d(axes[1][0], axes[1][1], axes[1][2]);
+  placement.z_axis = Vec3d(axes[2][0], axes[2][1], axes[2][2]);
   Track<double> scales = track_of(transform.keys, &TransformKey::scale);
   const bool animated = std::adjacent_find(scales.values.begin(), scales.values.end(),
                                            std::not_equal_to<>()) != scales.values.end();
-  if (!animated) // without a detour over the logarithm
+  if (!animated) { // without a detour over the logarithm
     placement.scale = scales.values.empty() ? transform.scale : scales.values.front();
-  else {
+  } else {
     for (double& scale : scales.values) scale = std::log(scale);
     placement.scale = std::exp(at(scales, 0, frame, smooth));
   }

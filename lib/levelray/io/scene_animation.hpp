@@ -3,8 +3,7 @@
 
 #include "levelray/io/scene_file.hpp"
 #include "levelray/render/camera.hpp"
-
-#include <ImathQuat.h>
+#include "levelray/render/similarity.hpp"
 
 namespace levelray {
 
@@ -20,17 +19,10 @@ double curve_at(const std::vector<double>& frames, const std::vector<double>& va
 // Throws Error(usage), naming file, line and frame, where the camera looks nowhere.
 CameraSettings camera_at(const SceneFile& scene, double frame);
 
-// World point = translate + rotation * (scale * object point).
-struct Placement {
-  Vec3d translate{0, 0, 0};
-  Imath::Quatd rotation; // of unit length
-  double scale = 1;
-};
-
 // Translation component by component, scale by its logarithm, so that it stays positive and grows evenly.
 // Rotation: when all keys turn around the same axis, the angle, over any number of turns; else between
 // neighbours the shortest great arc (Shoemake 1985, "Animating rotation with quaternion curves", section 3.3)
 // or, when smooth, the normalised curve of the quaternions' components.
-Placement placement_at(const TransformFile& transform, double frame);
+Similarity placement_at(const TransformFile& transform, double frame);
 
 } // namespace levelray

@@ -51,6 +51,11 @@ void drop_defaults(JsonValue& value, const JsonValue& standard, const std::vecto
 
 RenderFile::RenderFile() : intersector(RenderOptions().intersector), normals(RenderOptions().normals) {}
 
+GroundMaterialFile::GroundMaterialFile() {
+  kind = "diffuse";
+  albedo = GroundSettings().material.albedo;
+}
+
 SceneFile parse_scene(const std::string& text, const std::string& path,
                       const std::vector<std::string>& overrides) {
   const std::string file = printable(path, 200);
@@ -116,9 +121,9 @@ std::string scene_schema_text() {
 }
 
 std::string scene_keys_table() {
-  std::string rows = "| key | holds | default | what |\n|---|---|---|---|\n";
+  std::vector<KeyTable::Row> rows;
   KeyTable::add<SceneFile>(rows, "");
-  return rows;
+  return KeyTable::text(rows);
 }
 
 } // namespace levelray

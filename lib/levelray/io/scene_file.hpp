@@ -67,12 +67,21 @@ struct ConvertFile {
   std::string place;
 };
 
+// As Material (render/material.hpp), whose kind it names; so do the lights and surroundings below with
+// theirs.
 struct MaterialFile {
   std::string kind = "phong";
-  Vec3d color{0.72, 0.72, 0.70};
-  double specular = 0.18, exponent = 32; // phong
-  double ior = 1.5;                      // glass
+  Vec3d albedo{0.72, 0.72, 0.70};
+  std::optional<double> specular; // nothing: 0.18 for phong, else 0
+  double exponent = 32, ior = 1.5;
+  Vec3d tint{1, 1, 1};
   std::string place;
+};
+
+// Of the ground, which has no inside: any kind but glass. By default diffuse, of the albedo of
+// GroundSettings.
+struct GroundMaterialFile : MaterialFile {
+  GroundMaterialFile();
 };
 
 struct ObjectFile {
@@ -83,6 +92,7 @@ struct ObjectFile {
   std::optional<ConvertFile> convert;         // of a mesh
   TransformFile transform;
   MaterialFile material;
+  bool shadows = true; // casts some
   std::string place;
 
   const std::string& path() const { return level_set ? *level_set : *mesh; }
@@ -99,21 +109,22 @@ struct LightFile {
 };
 
 struct SkyFile {
-  Vec3d color{1, 1, 1};
-  double intensity = 0.06;
+  Vec3d radiance{1, 1, 1};
   bool visible = false;
   std::string place;
 };
 
 struct GroundFile {
   std::optional<double> height;
-  Vec3d color{0.55, 0.55, 0.55};
+  std::optional<Vec3d> centre;
+  std::optional<double> radius;
+  GroundMaterialFile material;
   std::string place;
 };
 
 struct AmbientOcclusionFile {
   int samples = 16;
-  double distance = 1; // world units
+  std::optional<double> radius; // world units; nothing: any distance
   std::string place;
 };
 
@@ -138,6 +149,7 @@ struct SceneFile {
   FilmFile film;
   std::vector<ObjectFile> objects;
   std::vector<LightFile> lights;
+  double ambient = 0;
   std::optional<SkyFile> sky;
   std::optional<GroundFile> ground;
   std::optional<AmbientOcclusionFile> ambient_occlusion;

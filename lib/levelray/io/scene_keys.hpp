@@ -9,6 +9,7 @@
 #include "levelray/io/scene_file.hpp"
 #include "levelray/normal/normals.hpp"
 #include "levelray/render/render_image.hpp"
+#include "levelray/render/scene.hpp"
 
 #include <cmath>
 
@@ -123,29 +124,47 @@ void describe(Visitor& v, ConvertFile& convert) {
 }
 
 template <class Visitor>
-void describe(Visitor& v, MaterialFile& material) {
-  v.kind(material.kind, material_kinds(), "What the surface is like");
-  const bool diffuse = material.kind == "diffuse" || material.kind == "phong";
-  v.key("color", material.color, within(0, 1),
-        diffuse ? "Albedo, scene-linear red, green, blue" : "What is reflected or let through, per colour");
-  if (material.kind == "phong") {
-    v.key("specular", material.specular, within(0, 1), "Strength of the highlight");
-    v.key("exponent", material.exponent, within(1, 1e5), "Its width: larger is narrower");
+void describe_material(Visitor& v, MaterialFile& material, const std::vector<std::string>& kinds) {
+  v.kind(material.kind, kinds, "What the surface does with light");
+  const bool glass = material.kind == "glass", mirror = material.kind == "mirror";
+  if (!glass && !mirror) v.key("albedo", material.albedo, within(0, 1), "Scene-linear red, green, blue");
+  if (material.kind != "diffuse") {
+    v.key("specular", material.specular, within(0, 100),
+          "Strength of the lights' highlights; without it 0.18 for phong, else 0");
+    v.key("exponent", material.exponent, within(1, 1e6), "Their width: larger is narrower");
   }
-  if (material.kind == "glass") v.key("ior", material.ior, within(1, 4), "Index of refraction");
+  if (glass)
+    v.key("ior", material.ior, within(0.1, 10), "Index of refraction, relative to what is around it");
+  if (mirror) v.key("tint", material.tint, within(0, 1), "The part that is reflected, per colour");
+  if (glass)
+    v.key("tint", material.tint, within(0, 1),
+          "The part that one world unit of way inside lets through, per colour");
+}
+
+template <class Visitor>
+void describe(Visitor& v, MaterialFile& material) {
+  describe_material(v, material, material_kinds());
+}
+
+template <class Visitor>
+void describe(Visitor& v, GroundMaterialFile& material) {
+  static const std::vector<std::string> kinds{"diffuse", "phong", "mirror"};
+  describe_material(v, material, kinds);
 }
 
 template <class Visitor>
 void describe(Visitor& v, ObjectFile& object) {
   v.key("name", object.name, text_like("[A-Za-z_][A-Za-z0-9_-]*", "a name of letters, digits, _ and -"),
         "For --set and messages; unique");
-  v.key("id", object.id, within(0, 16777216), "In the id channel; 0: its place in the list, from 1");
+  v.key("id", object.id, within(0, static_cast<double>(largest_id)),
+        "In the id channel; 0: its place in the list, from 1");
   v.key("level_set", object.level_set, any(), "A .vdb; #### stands for the frame's number");
   v.key("mesh", object.mesh, any(), "A mesh to convert, instead; #### as well");
   v.key("grid", object.grid, any(), "Of a .vdb with several: NAME, NAME[i] or [i]");
   v.key("convert", object.convert, any(), "How the mesh becomes a level set");
   v.key("transform", object.transform, any(), "From the file's space to the world");
-  v.key("material", object.material, any(), "What the surface is like");
+  v.key("material", object.material, any(), "What the surface does with light");
+  v.key("shadows", object.shadows, any(), "Whether it casts shadows");
   v.one_of({"level_set", "mesh"});
   v.require(object.grid.empty() || object.level_set, "grid", "is for level_set, not for mesh");
   v.require(!object.convert || object.mesh, "convert", "is for mesh, not for level_set");
@@ -160,7 +179,7 @@ void describe(Visitor& v, LightFile& light) {
     v.key("position", light.position, any().must(), "Where it is, world units");
   else
     v.key("direction", light.direction, any().must(), "From the scene towards the light, of any length");
-  v.key("color", light.color, within(0, 1), "Scene-linear red, green, blue");
+  v.key("color", light.color, at_least(0), "A factor: scene-linear red, green, blue");
   v.key("intensity", light.intensity, at_least(0),
         light.kind == "point" ? "Radiance of a white surface that faces it from a distance of 1"
                               : "Radiance of a white surface that faces it");
@@ -170,21 +189,24 @@ void describe(Visitor& v, LightFile& light) {
 
 template <class Visitor>
 void describe(Visitor& v, SkyFile& sky) {
-  v.key("color", sky.color, within(0, 1), "Scene-linear red, green, blue");
-  v.key("intensity", sky.intensity, at_least(0), "Radiance from everywhere");
+  v.key("radiance", sky.radiance, at_least(0), "The same from everywhere: scene-linear red, green, blue");
   v.key("visible", sky.visible, any(), "Whether it is the picture's background, too, instead of alpha 0");
 }
 
 template <class Visitor>
 void describe(Visitor& v, GroundFile& ground) {
-  v.key("height", ground.height, any(), "Along camera.up; without it below the lowest point");
-  v.key("color", ground.color, within(0, 1), "Albedo");
+  v.key("height", ground.height, any(),
+        "Along camera.up; without it, the objects' lowest point of each frame");
+  v.key("centre", ground.centre, any(), "Where it is opaque; without it, below the objects");
+  v.key("radius", ground.radius, above(0),
+        "Opaque within 2 radii, gone at 6; without it, that of the objects");
+  v.key("material", ground.material, any(), "What it does with light");
 }
 
 template <class Visitor>
 void describe(Visitor& v, AmbientOcclusionFile& occlusion) {
-  v.key("samples", occlusion.samples, within(1, 4096), "Rays per hit");
-  v.key("distance", occlusion.distance, above(0), "How far surfaces darken each other, world units");
+  v.key("samples", occlusion.samples, within(1, 65536), "Rays per shaded point");
+  v.key("radius", occlusion.radius, above(0), "How far they look, world units; without it, any distance");
 }
 
 template <class Visitor>
@@ -213,10 +235,11 @@ void describe(Visitor& v, SceneFile& scene) {
   v.key("film", scene.film, any(), "The picture");
   v.key("objects", scene.objects, items(1).must(), "What is seen");
   v.key("lights", scene.lights, any(), "What shines on it");
+  v.key("ambient", scene.ambient, at_least(0), "Like a white sky of that radiance that is never seen");
   v.key("sky", scene.sky, any(), "Light of the same colour from everywhere");
   v.key("ground", scene.ground, any(), "A plane that fades out around the objects");
   v.key("ambient_occlusion", scene.ambient_occlusion, any(),
-        "The sky's light, darker where surfaces are near");
+        "Sky and ambient are darker where surfaces are near");
   v.key("render", scene.render, any(), "How it is computed");
   v.key("outputs", scene.outputs, any(), "Pictures to write, .exr or .png; -o");
   v.key("limits", scene.limits, any(), "What a frame may take");
