@@ -8,8 +8,8 @@ namespace levelray {
 
 enum class PixelStatus : std::uint8_t {
   miss,    // nothing; of the other values only the counts are set
-  surface, // the level set, entered from outside
-  inner,   // the level set, left from inside: the camera stands in the object
+  surface, // an object, entered from outside
+  inner,   // an object, left from inside: the camera stands in it
   ground   // the ground plane
 };
 
@@ -23,11 +23,12 @@ struct GBuffer {
   uninitialized_vector<Vec3d> outside; // world units: the ray's last point proven to lie before the surface,
                                        // where secondary rays start
   uninitialized_vector<Vec3f> normal;  // unit, outward (towards the positive side); never NaN
+  uninitialized_vector<std::int32_t> object; // index of the instance that was hit; -1: none
   uninitialized_vector<RayCounts> counts;
 
   // Bytes that a pixel takes.
-  static constexpr std::size_t bytes_per_pixel =
-      sizeof(PixelStatus) + sizeof(double) + 2 * sizeof(Vec3d) + sizeof(Vec3f) + sizeof(RayCounts);
+  static constexpr std::size_t bytes_per_pixel = sizeof(PixelStatus) + sizeof(double) + 2 * sizeof(Vec3d) +
+                                                 sizeof(Vec3f) + sizeof(std::int32_t) + sizeof(RayCounts);
 
   // Values are undefined until written.
   void resize(int new_width, int new_height) {
@@ -39,6 +40,7 @@ struct GBuffer {
     point.resize(n);
     outside.resize(n);
     normal.resize(n);
+    object.resize(n);
     counts.resize(n);
   }
   std::size_t index(int x, int y) const {

@@ -1,6 +1,6 @@
 #include "levelray/render/ground.hpp"
 
-#include "levelray/render/surface_extent.hpp"
+#include "levelray/render/scene_extent.hpp"
 
 #include <algorithm>
 
@@ -20,16 +20,35 @@ double Ground::coverage(const Vec3d& point) const {
   return x * x * (3 - 2 * x); // a cubic step: no visible edge at either end
 }
 
-Ground ground_below(const BlockGrid& grid, const Vec3d& up) {
+Ground place_ground(const GroundSettings& settings, std::span<const Instance> instances) {
   Ground ground;
-  ground.up = up.normalized();
-  const Box3d bounds = surface_bounds(grid);
-  if (bounds.isEmpty()) return ground;
-  const Vec3d down = -ground.up, middle = bounds.min + bounds.size() * 0.5;
-  ground.height = -surface_support(grid, {&down, 1}).front();
+  ground.up = settings.up.normalized();
+  const Box3d bounds =
+      settings.height && settings.centre && settings.radius ? Box3d() : scene_bounds(instances);
+  const bool empty = bounds.isEmpty();
+  if (settings.height) {
+    ground.height = *settings.height;
+  } else if (!empty) {
+    const Vec3d down = -ground.up;
+    ground.height = -scene_support(instances, {&down, 1}).front();
+  }
+  const Vec3d middle = settings.centre ? *settings.centre
+                       : empty         ? Vec3d(0, 0, 0)
+                                       : bounds.min + bounds.size() * 0.5;
   ground.centre = middle - ground.up * (middle.dot(ground.up) - ground.height);
-  ground.radius = bounds.size().length() / 2;
+  if (settings.radius)
+    ground.radius = *settings.radius;
+  else if (!empty)
+    ground.radius = bounds.size().length() / 2;
   return ground;
+}
+
+Ground ground_below(const BlockGrid& grid, const Vec3d& up) {
+  GroundSettings settings;
+  settings.up = up;
+  Instance instance;
+  instance.grid = &grid;
+  return place_ground(settings, {&instance, 1});
 }
 
 } // namespace levelray

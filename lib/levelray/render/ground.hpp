@@ -2,9 +2,10 @@
 #pragma once
 
 #include "levelray/core/ray.hpp"
-#include "levelray/grid/block_grid.hpp"
+#include "levelray/render/scene.hpp"
 
 #include <optional>
+#include <span>
 
 namespace levelray {
 
@@ -21,6 +22,10 @@ struct Ground {
   // In [0,1], of a point of the plane.
   double coverage(const Vec3d& point) const;
 };
+
+// The ground of a scene: where its settings leave something open, below the objects' lowest point, around the
+// middle of their bounds.
+Ground place_ground(const GroundSettings& settings, std::span<const Instance> instances);
 
 // The ground below the surface's lowest point.
 Ground ground_below(const BlockGrid& grid, const Vec3d& up);

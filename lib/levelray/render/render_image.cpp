@@ -2,6 +2,7 @@
 
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/render/shading.hpp"
 #include "levelray/render/visibility.hpp"
 
 #include <atomic>
@@ -36,7 +37,7 @@ void check_render_options(const RenderOptions& options) {
     bool known = false;
     for (const std::string& name : aov_names()) known = known || name == aov;
     if (!known)
-      throw Error(ErrorKind::usage, "unknown AOV \"" + aov + "\"; choose from Z, t, P, N, steps, tests");
+      throw Error(ErrorKind::usage, "unknown AOV \"" + aov + "\"; choose from Z, t, P, N, id, steps, tests");
   }
   for (const DirectionalLight& light : options.lights)
     if (!(std::abs(light.to_light.length() - 1) < 1e-9) || !(light.intensity >= 0))
@@ -46,78 +47,9 @@ void check_render_options(const RenderOptions& options) {
 
 namespace {
 
-// Everything that shading a tile needs, and the sums it leaves.
-struct Shading {
-  const LevelSet& level_set;
-  const RenderOptions& options;
-  const std::vector<DirectionalLight>& lights;
-  Material surface, ground_material;
-  const Ground* ground;
-  std::atomic<std::uint64_t> shadow_rays{0}, hits{0};
-};
-
-// A pixel of a tile that has something to shade.
-struct Point {
-  std::size_t pixel;
-  Vec3d normal, to_eye, radiance;
-  const Material* material;
-};
-
-// Adds one light to the points of a tile: those that face it and, with shadows, are not hidden from it.
-void add_light(Shading& shading, const DirectionalLight& light, const GBuffer& gbuffer,
-               std::vector<Point>& points) {
-  std::vector<std::size_t> lit;
-  std::vector<Vec3d> gain;
-  std::vector<WorldRay> rays;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point& p = points[i];
-    const Vec3d radiance = shade_light(*p.material, p.normal, light.to_light, p.to_eye) * light.intensity;
-    if (!(radiance.x > 0 || radiance.y > 0 || radiance.z > 0)) continue;
-    lit.push_back(i);
-    gain.push_back(radiance);
-    if (!shading.options.shadows || !light.casts_shadows) continue;
-    // From the ray's last point that is proven to be outside: no offset, hence no acne and no leak.
-    WorldRay& ray = rays.emplace_back();
-    ray.origin = gbuffer.outside[p.pixel];
-    ray.direction = light.to_light;
-  }
-  const std::unique_ptr<bool[]> hidden(new bool[lit.size()]());
-  if (!rays.empty())
-    any_hits(shading.level_set, rays, shading.options.intersector, std::span(hidden.get(), rays.size()));
-  shading.shadow_rays += rays.size();
-  for (std::size_t i = 0; i < lit.size(); ++i)
-    if (!hidden[i]) points[lit[i]].radiance += gain[i];
-}
-
-// Adds the tile's colours to `rgba` (four channels of the image), weighted.
-void shade_tile(Shading& shading, const Tile& tile, const Vec3d& eye, const GBuffer& gbuffer, float weight,
-                float* const rgba[4]) {
-  std::vector<Point> points;
-  for (int y = tile.y_begin; y < tile.y_end; ++y)
-    for (int x = tile.x_begin; x < tile.x_end; ++x) {
-      const std::size_t i = gbuffer.index(x, y);
-      const PixelStatus status = gbuffer.status[i];
-      if (status == PixelStatus::miss) continue;
-      Point& p = points.emplace_back();
-      p.pixel = i;
-      p.material = status == PixelStatus::ground ? &shading.ground_material : &shading.surface;
-      p.normal = Vec3d(gbuffer.normal[i]);
-      if (status == PixelStatus::inner) p.normal = -p.normal; // seen from behind
-      p.to_eye = (eye - gbuffer.point[i]).normalized();
-      p.radiance = p.material->albedo * ambient_intensity;
-      shading.hits += status == PixelStatus::ground ? 0 : 1;
-    }
-  for (const DirectionalLight& light : shading.lights) add_light(shading, light, gbuffer, points);
-  for (const Point& p : points) {
-    const bool on_ground = gbuffer.status[p.pixel] == PixelStatus::ground;
-    const double coverage = on_ground ? shading.ground->coverage(gbuffer.point[p.pixel]) : 1;
-    for (int c = 0; c < 3; ++c) rgba[c][p.pixel] += static_cast<float>(p.radiance[c] * coverage) * weight;
-    rgba[3][p.pixel] += static_cast<float>(coverage) * weight;
-  }
-}
-
 // Copies the values of an AOV out of the G-buffer.
-void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& camera, Image& image) {
+void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& camera, const Scene& scene,
+              Image& image) {
   const auto fill = [&](const std::string& channel, float miss, auto&& value) {
     std::vector<float>& values = image.add(channel);
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -132,6 +64,12 @@ void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& cam
     if (name == "P") fill("P" + suffix, 0, [&](std::size_t i) { return gbuffer.point[i][c]; });
     if (name == "N") fill("N" + suffix, 0, [&](std::size_t i) { return gbuffer.normal[i][c]; });
   }
+  if (name == "id")
+    fill("id", 0, [&](std::size_t i) {
+      const std::int32_t object = gbuffer.object[i];
+      return object == SceneRays::nothing ? scene.ground->id
+                                          : scene.instances[static_cast<std::size_t>(object)].id;
+    });
   // Counters are of the ray, whether it hit or not.
   const auto count = [&](auto member) {
     std::vector<float>& values = image.add(name);
@@ -144,7 +82,7 @@ void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& cam
 } // namespace
 
 const std::vector<std::string>& aov_names() {
-  static const std::vector<std::string> names{"Z", "t", "P", "N", "steps", "tests"};
+  static const std::vector<std::string> names{"Z", "t", "P", "N", "id", "steps", "tests"};
   return names;
 }
 
@@ -156,17 +94,33 @@ std::uint64_t render_bytes(const RenderOptions& options) {
   return pixels * (GBuffer::bytes_per_pixel + channels * 2 * sizeof(float));
 }
 
+Scene one_grid_scene(const BlockGrid& grid, const RenderOptions& options) {
+  Scene scene;
+  Instance& instance = scene.instances.emplace_back();
+  instance.grid = &grid;
+  instance.material = shading_material(options.shading);
+  scene.directional_lights =
+      options.lights.empty() ? three_point_lights(Camera(options.camera)) : options.lights;
+  scene.ambient = ambient_intensity;
+  if (options.ground) scene.ground.emplace().up = options.camera.up;
+  return scene;
+}
+
 RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) {
   check_render_options(options);
+  return render_image(one_grid_scene(grid, options), options);
+}
+
+RenderedImage render_image(const Scene& scene, const RenderOptions& options) {
+  check_render_options(options);
+  check_scene(scene);
   const Camera camera(options.camera);
   const int width = options.camera.width, height = options.camera.height;
   const int side = samples_per_side(options.samples);
   const bool centre_is_a_sample = side % 2 == 1;
   const bool needs_centre_pass = !centre_is_a_sample && !options.aovs.empty();
-  const std::vector<DirectionalLight> lights =
-      options.lights.empty() ? three_point_lights(camera) : options.lights;
   std::optional<Ground> ground;
-  if (options.ground) ground = ground_below(grid, options.camera.up);
+  if (scene.ground) ground = place_ground(*scene.ground, scene.instances);
 
   RenderedImage result;
   RenderStats& stats = result.stats;
@@ -191,20 +145,18 @@ RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) 
     for (int c = 0; c < 4; ++c) rgba[c] = result.image.channels[static_cast<std::size_t>(c)].values.data();
 
     auto start = std::chrono::steady_clock::now();
-    const LevelSet level_set(grid);
+    const SceneRays objects(scene.instances);
     stats.prepare_ms.push_back(milliseconds_since(start));
 
-    const Visibility scene{level_set, camera, ground ? &*ground : nullptr, options.intersector,
-                           options.normals};
-    Material ground_material;
-    ground_material.albedo = Vec3d(0.55);
-    Shading shading{level_set,       options,     lights, shading_material(options.shading),
-                    ground_material, scene.ground};
+    const Visibility visible{objects, camera, ground ? &*ground : nullptr, options.intersector,
+                             options.normals};
+    Shading shading{scene,           objects,         visible.ground, options.intersector,
+                    options.normals, options.shadows, options.seed,   options.camera.eye};
     double trace_ms = 0, shade_ms = 0;
     const auto trace = [&](double x, double y) {
       start = std::chrono::steady_clock::now();
       for_each_tile(width, height, [&](const Tile& tile) {
-        trace_tile(scene, tile, x, y, gbuffer);
+        trace_tile(visible, tile, x, y, gbuffer);
         advance(tile);
       });
       trace_ms += milliseconds_since(start);
@@ -214,21 +166,21 @@ RenderedImage render_image(const BlockGrid& grid, const RenderOptions& options) 
       trace((sample % side + 0.5) / side, (sample / side + 0.5) / side);
       start = std::chrono::steady_clock::now();
       for_each_tile(width, height, [&](const Tile& tile) {
-        shade_tile(shading, tile, options.camera.eye, gbuffer, 1.0f / static_cast<float>(options.samples),
-                   rgba);
+        shade_tile(shading, tile, gbuffer, sample, 1.0f / static_cast<float>(options.samples), rgba);
         advance(tile);
       });
       shade_ms += milliseconds_since(start);
       if (centre_is_a_sample && sample == options.samples / 2) // row and column side/2: the offset (0.5, 0.5)
-        for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, result.image);
+        for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, scene, result.image);
     }
     if (needs_centre_pass) {
       trace(0.5, 0.5);
-      for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, result.image);
+      for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, scene, result.image);
     }
     stats.trace_ms.push_back(trace_ms);
     stats.shade_ms.push_back(shade_ms);
     stats.shadow_rays = shading.shadow_rays;
+    stats.secondary_rays = shading.secondary_rays;
     stats.hits = shading.hits;
   }
   return result;

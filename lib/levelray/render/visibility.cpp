@@ -15,32 +15,36 @@ void add_ground(const Ground& ground, const WorldRay& ray, std::size_t pixel, GB
   gbuffer.t[pixel] = *t;
   gbuffer.point[pixel] = gbuffer.outside[pixel] = ray.at(*t);
   gbuffer.normal[pixel] = Vec3f(ground.up);
+  gbuffer.object[pixel] = SceneRays::nothing;
 }
 
 } // namespace
 
-void trace_tile(const Visibility& scene, const Tile& tile, double x, double y, GBuffer& gbuffer) {
+void trace_tile(const Visibility& visible, const Tile& tile, double x, double y, GBuffer& gbuffer) {
   constexpr std::size_t capacity = static_cast<std::size_t>(tile_size) * tile_size;
   std::array<WorldRay, capacity> ray_store;
   std::array<Hit, capacity> hit_store;
   std::array<Vec3f, capacity> normal_store;
+  std::array<int, capacity> object_store;
 
   const int width = tile.x_end - tile.x_begin;
   const auto count = static_cast<std::size_t>(width * (tile.y_end - tile.y_begin));
   for (std::size_t i = 0; i < count; ++i)
-    ray_store[i] = scene.camera.ray(tile.x_begin + static_cast<int>(i) % width + x,
-                                    tile.y_begin + static_cast<int>(i) / width + y);
+    ray_store[i] = visible.camera.ray(tile.x_begin + static_cast<int>(i) % width + x,
+                                      tile.y_begin + static_cast<int>(i) / width + y);
   const std::span<const WorldRay> rays(ray_store.data(), count);
   const std::span<Hit> hits(hit_store.data(), count);
   const std::span<Vec3f> normals(normal_store.data(), count);
-  closest_hits(scene.level_set, rays, scene.intersector, hits);
-  hit_normals(scene.level_set, rays, hits, scene.normals, normals);
+  const std::span<int> objects(object_store.data(), count);
+  visible.objects.closest(rays, visible.intersector, hits, objects);
+  visible.objects.normals(rays, hits, objects, visible.normals, normals);
 
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel =
         gbuffer.index(tile.x_begin + static_cast<int>(i) % width, tile.y_begin + static_cast<int>(i) / width);
     const Hit& hit = hits[i];
     gbuffer.counts[pixel] = hit.counts;
+    gbuffer.object[pixel] = objects[i];
     gbuffer.status[pixel] = !hit              ? PixelStatus::miss
                             : hit.from_inside ? PixelStatus::inner
                                               : PixelStatus::surface;
@@ -50,7 +54,7 @@ void trace_tile(const Visibility& scene, const Tile& tile, double x, double y, G
       gbuffer.outside[pixel] = rays[i].at(hit.t_outside);
       gbuffer.normal[pixel] = normals[i];
     }
-    if (scene.ground) add_ground(*scene.ground, rays[i], pixel, gbuffer);
+    if (visible.ground) add_ground(*visible.ground, rays[i], pixel, gbuffer);
   }
 }
 

@@ -4,10 +4,8 @@
 #include "levelray/render/camera.hpp"
 #include "levelray/render/gbuffer.hpp"
 #include "levelray/render/ground.hpp"
+#include "levelray/render/scene_rays.hpp"
 #include "levelray/render/tiles.hpp"
-#include "levelray/trace/hit_normals.hpp"
-#include "levelray/trace/level_set.hpp"
-#include "levelray/trace/trace.hpp"
 
 #include <string_view>
 
@@ -15,13 +13,13 @@ namespace levelray {
 
 // What is traced, and how.
 struct Visibility {
-  const LevelSet& level_set;
+  const SceneRays& objects;
   const Camera& camera;
   const Ground* ground;                  // or null
   std::string_view intersector, normals; // names of intersect/intersectors.hpp and normal/normals.hpp
 };
 
 // Fills the tile's pixels for rays through (i + x, j + y), x and y in [0,1).
-void trace_tile(const Visibility& scene, const Tile& tile, double x, double y, GBuffer& gbuffer);
+void trace_tile(const Visibility& visible, const Tile& tile, double x, double y, GBuffer& gbuffer);
 
 } // namespace levelray

@@ -1,0 +1,102 @@
+#include "levelray/render/scene_rays.hpp"
+
+#include "levelray/trace/hit_normals.hpp"
+#include "levelray/trace/trace.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+
+namespace levelray {
+
+SceneRays::SceneRays(std::span<const Instance> instances) {
+  std::map<const BlockGrid*, const LevelSet*> ready;
+  for (const Instance& instance : instances)
+    if (instance.level_set) ready.emplace(instance.grid, instance.level_set);
+  for (const Instance& instance : instances) {
+    const LevelSet*& level_set = ready[instance.grid];
+    if (!level_set) level_set = level_sets_.emplace_back(std::make_unique<LevelSet>(*instance.grid)).get();
+    objects_.push_back({&instance, level_set, instance.world_from_object.inverse(),
+                        instance.world_from_object.is_identity()});
+  }
+}
+
+void SceneRays::closest(std::span<const WorldRay> rays, std::string_view intersector, std::span<Hit> hits,
+                        std::span<int> objects) const {
+  assert(rays.size() == hits.size() && rays.size() == objects.size());
+  if (objects_.size() == 1 && objects_[0].in_place) {
+    closest_hits(*objects_[0].level_set, rays, intersector, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) objects[i] = hits[i] ? 0 : nothing;
+    return;
+  }
+  std::fill(hits.begin(), hits.end(), Hit{});
+  std::fill(objects.begin(), objects.end(), nothing);
+  std::vector<WorldRay> moved(rays.size());
+  std::vector<Hit> found(rays.size());
+  for (std::size_t o = 0; o < objects_.size(); ++o) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      moved[i] = objects_[o].in_place ? rays[i] : objects_[o].object_from_world.ray(rays[i]);
+      if (hits[i]) moved[i].t_max = std::min(moved[i].t_max, hits[i].t);
+    }
+    closest_hits(*objects_[o].level_set, moved, intersector, found);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      RayCounts counts = hits[i].counts;
+      counts.steps += found[i].counts.steps, counts.tests += found[i].counts.tests;
+      if (found[i] && (!hits[i] || found[i].t < hits[i].t)) {
+        hits[i] = found[i];
+        objects[i] = static_cast<int>(o);
+      }
+      hits[i].counts = counts;
+    }
+  }
+}
+
+void SceneRays::normals(std::span<const WorldRay> rays, std::span<const Hit> hits,
+                        std::span<const int> objects, std::string_view scheme,
+                        std::span<Vec3f> normals) const {
+  if (objects_.size() == 1 && objects_[0].in_place)
+    return hit_normals(*objects_[0].level_set, rays, hits, scheme, normals);
+  std::fill(normals.begin(), normals.end(), Vec3f(0, 0, 0));
+  std::vector<std::size_t> mine;
+  std::vector<WorldRay> moved;
+  std::vector<Hit> of_mine;
+  std::vector<Vec3f> found;
+  for (std::size_t o = 0; o < objects_.size(); ++o) {
+    mine.clear(), moved.clear(), of_mine.clear();
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (objects[i] == static_cast<int>(o)) {
+        mine.push_back(i);
+        moved.push_back(objects_[o].in_place ? rays[i] : objects_[o].object_from_world.ray(rays[i]));
+        of_mine.push_back(hits[i]);
+      }
+    found.resize(mine.size());
+    hit_normals(*objects_[o].level_set, moved, of_mine, scheme, found);
+    const Similarity& place = objects_[o].instance->world_from_object;
+    for (std::size_t i = 0; i < mine.size(); ++i)
+      normals[mine[i]] = objects_[o].in_place ? found[i] : Vec3f(place.rotate(Vec3d(found[i])));
+  }
+}
+
+void SceneRays::any(std::span<const WorldRay> rays, std::string_view intersector,
+                    std::span<bool> hits) const {
+  assert(rays.size() == hits.size());
+  if (objects_.size() == 1 && objects_[0].in_place && objects_[0].instance->casts_shadows)
+    return any_hits(*objects_[0].level_set, rays, intersector, hits);
+  std::fill(hits.begin(), hits.end(), false);
+  std::vector<std::size_t> open; // rays that have met nothing yet
+  std::vector<WorldRay> moved;
+  const std::unique_ptr<bool[]> found(new bool[rays.size()]());
+  for (const SceneObject& object : objects_) {
+    if (!object.instance->casts_shadows) continue;
+    open.clear(), moved.clear();
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!hits[i]) {
+        open.push_back(i);
+        moved.push_back(object.in_place ? rays[i] : object.object_from_world.ray(rays[i]));
+      }
+    any_hits(*object.level_set, moved, intersector, {found.get(), moved.size()});
+    for (std::size_t i = 0; i < open.size(); ++i) hits[open[i]] = found[i];
+  }
+}
+
+} // namespace levelray
