@@ -49,6 +49,10 @@ half to_half(float value) {
   return half(std::clamp(value, -static_cast<float>(HALF_MAX), static_cast<float>(HALF_MAX)));
 }
 
+std::uint32_t to_number(float value) {
+  return value > 0 ? static_cast<std::uint32_t>(std::min(value, 0x1p24f)) : 0;
+}
+
 Imf::Header make_header(const Image& image, const ExrOptions& options) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
@@ -71,7 +75,8 @@ std::string encode_exr(const Image& image, const ExrOptions& options) {
   try {
     Imf::Header header = make_header(image, options);
     Imf::FrameBuffer frame_buffer;
-    std::list<std::vector<half>> halves; // a list: slices point into its elements
+    std::list<std::vector<half>> halves; // lists: slices point into their elements
+    std::list<std::vector<std::uint32_t>> numbers;
     const auto row = static_cast<std::size_t>(image.width);
     for (const Image::Channel& channel : image.channels) {
       if (is_colour(channel.name)) {
@@ -80,6 +85,12 @@ std::string encode_exr(const Image& image, const ExrOptions& options) {
         header.channels().insert(channel.name, Imf::Channel(Imf::HALF));
         frame_buffer.insert(channel.name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(values.data()),
                                                      sizeof(half), row * sizeof(half)));
+      } else if (channel.name == "id") {
+        std::vector<std::uint32_t>& values = numbers.emplace_back(channel.values.size());
+        std::transform(channel.values.begin(), channel.values.end(), values.begin(), to_number);
+        header.channels().insert(channel.name, Imf::Channel(Imf::UINT));
+        frame_buffer.insert(channel.name, Imf::Slice(Imf::UINT, reinterpret_cast<char*>(values.data()),
+                                                     sizeof(std::uint32_t), row * sizeof(std::uint32_t)));
       } else {
         header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
         char* values =

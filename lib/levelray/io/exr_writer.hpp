@@ -15,8 +15,9 @@ struct ExrOptions {
 };
 
 // The bytes of a scan-line OpenEXR file with ZIP compression: channels R, G, B, A as half (values beyond its
-// range become the largest finite half), all others as float. The same image and options give the same bytes;
-// nothing tells the time or the machine. Throws Error(failed) for images that OpenEXR refuses.
+// range become the largest finite half), id as unsigned integer, all others as float. The same image and
+// options give the same bytes; nothing tells the time or the machine. Throws Error(failed) for images that
+// OpenEXR refuses.
 std::string encode_exr(const Image& image, const ExrOptions& options);
 
 // The version of the library beneath, e.g. "3.1.5".

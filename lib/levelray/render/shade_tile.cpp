@@ -60,8 +60,9 @@ std::vector<Vertex> first_vertices(Shading& shading, const Tile& tile, const GBu
   return vertices;
 }
 
-// Traces rays to their next vertices; those that meet nothing add the sky to their pixels.
-std::vector<Vertex> next_vertices(Shading& shading, const std::vector<PathRay>& paths,
+} // namespace
+
+std::vector<Vertex> next_vertices(Shading& shading, std::span<const PathRay> paths,
                                   std::vector<Vec3d>& totals) {
   std::vector<WorldRay> rays;
   for (const PathRay& path : paths) rays.push_back(path.ray);
@@ -102,8 +103,6 @@ std::vector<Vertex> next_vertices(Shading& shading, const std::vector<PathRay>& 
   }
   return vertices;
 }
-
-} // namespace
 
 void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int sample, float weight,
                 float* const rgba[4]) {

@@ -64,6 +64,11 @@ std::vector<Vec3d> local_radiance(Shading& shading, std::span<const Vertex> vert
 // within ambient_occlusion.radius; estimated by ambient_occlusion.samples rays.
 std::vector<double> occlusion(Shading& shading, std::span<const Vertex> vertices);
 
+// Traces rays to their next vertices, in their order. Those that meet nothing have none, and add their part
+// of the sky to totals[root].
+std::vector<Vertex> next_vertices(Shading& shading, std::span<const PathRay> paths,
+                                  std::vector<Vec3d>& totals);
+
 // Appends the rays that go on from a mirror or glass, at most two; none from other materials.
 void scatter(const Shading& shading, const Vertex& vertex, std::vector<PathRay>& rays);
 
