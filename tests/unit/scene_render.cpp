@@ -280,6 +280,25 @@ TEST_CASE("a grey mirror and tinted glass take their part, and depth 0 sees only
   CHECK((radiance() - Vec3d(1, 1, 1)).length() < 1e-6);
 }
 
+TEST_CASE("mirrors and glass scatter no light of lamps, but for a highlight where they are told to") {
+  Scene scene;
+  scene.instances.push_back(ball(ball_grid(), Vec3d(0, 0, 0), 1, plain(MaterialKind::mirror)));
+  scene.directional_lights.emplace_back(); // from the camera
+  RenderOptions options = looking(1, 1);
+  options.camera.fov_degrees = 0.01;
+  for (const MaterialKind kind : {MaterialKind::mirror, MaterialKind::glass}) {
+    scene.instances[0].material = plain(kind);
+    CHECK(rgb(render_image(scene, options).image, 0) == Vec3d(0, 0, 0));
+    scene.instances[0].material.specular = 0.5;
+    CHECK(rgb(render_image(scene, options).image, 0).x ==
+          Approx(0.5).margin(0.01)); // (1 - 2 * 1.22^2/144^2)^32
+  }
+  scene.instances[0].material.kind = MaterialKind::phong;
+  CHECK(rgb(render_image(scene, options).image, 0).x == Approx(1.5).margin(0.01));
+  scene.instances[0].material.kind = MaterialKind::diffuse;
+  CHECK(rgb(render_image(scene, options).image, 0).x == Approx(1).margin(0.01));
+}
+
 TEST_CASE("a mirror shows what stands in front of it, in its place") {
   // The camera looks along -z at a mirror ball; a red ball behind the camera's eye, on the axis, is
   // seen in the middle.
