@@ -12,5 +12,6 @@ using Work = std::function<void()>;
 void add_convert(CLI::App& program, Work& run);
 void add_render(CLI::App& program, Work& run);
 void add_info(CLI::App& program, Work& run);
+void add_scene(CLI::App& program, Work& run);
 
 } // namespace levelray

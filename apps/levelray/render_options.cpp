@@ -59,6 +59,10 @@ void PictureOptions::add_to(CLI::App& command) {
       ->required()
       ->allow_extra_args(false)
       ->type_name("FILE");
+  add_look_to(command);
+}
+
+void PictureOptions::add_look_to(CLI::App& command) {
   const std::string camera = "Camera", image = "Picture";
   command.add_option("--size", size, "Pixels")->capture_default_str()->type_name("WxH")->group(camera);
   command.add_option("--eye", eye, "Where the camera stands; default: so that all is seen")

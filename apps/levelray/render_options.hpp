@@ -15,6 +15,8 @@ struct PictureOptions {
   int samples = 1, repeat = 1;
 
   void add_to(CLI::App& command);
+  // All but the outputs.
+  void add_look_to(CLI::App& command);
   // Throws Error(usage) for everything that can be told without the grid.
   void check() const { resolve_without_grid(); }
   // With a camera: the given one, completed by framing the grid's surface.

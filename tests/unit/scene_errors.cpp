@@ -103,7 +103,7 @@ TEST_CASE("values of the wrong type, out of range and not among the names are re
        "shot.json:6: objects[0]: only one of the keys level_set, mesh may be there"},
       {"\"mesh\": \"ball.obj\"", "\"id\": 3",
        "shot.json:6: objects[0]: one of the keys level_set, mesh is missing"},
-      {"\"mesh\": \"ball.obj\"", "\"mesh\": \"\"", "shot.json:6: objects[0].mesh: is empty; name a file"},
+      {"\"mesh\": \"ball.obj\"", "\"mesh\": \"\"", "shot.json:6: objects[0].mesh: must not be empty"},
       {"\"mesh\": \"ball.obj\"", "\"mesh\": \"ball.obj\", \"grid\": \"x\"",
        "shot.json:6: objects[0].grid: is for level_set, not for mesh"},
       {"\"mesh\": \"ball.obj\"", "\"mesh\": \"a\\u0000b\"",

@@ -140,6 +140,7 @@ void KeyReader::read(const JsonValue& from, const std::string& path, std::string
   if (text.size() > (rule.pattern ? max_pattern_bytes : max_text_bytes) ||
       text.find('\0') != std::string::npos)
     refuse_value(file_, from, path, "too long, or holds a zero character");
+  if (text.size() < rule.least_items) refuse_value(file_, from, path, "must not be empty");
   if (rule.pattern && !std::regex_match(text, std::regex(rule.pattern)))
     refuse_wrong(file_, from, path, wanted_text(&value, rule));
   value = text;

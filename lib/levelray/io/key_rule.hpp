@@ -27,7 +27,7 @@ struct Rule {
   const char* pattern = nullptr;                   // of texts: an ECMAScript expression for all of it
   const char* form = nullptr;                      // what the pattern means, for messages
   bool required = false;
-  std::size_t least_items = 0; // of lists
+  std::size_t least_items = 0; // of lists; bytes of texts
 
   Rule must() const {
     Rule rule = *this;
@@ -54,8 +54,8 @@ inline Rule one_of_names(const std::vector<std::string>& names) {
 inline Rule text_like(const char* pattern, const char* form) {
   return {.pattern = pattern, .form = form};
 }
-inline Rule items(std::size_t least) {
-  return {.least_items = least};
+inline Rule not_empty() {
+  return {.least_items = 1};
 }
 
 // The longest text that a file may hold where a pattern is checked (std::regex recurses once per character),

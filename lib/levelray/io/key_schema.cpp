@@ -44,6 +44,7 @@ JsonValue schema_of(const std::string*, const Rule& rule) {
     for (const std::string& name : *rule.names) names.items.push_back(name);
     schema.set("enum", names);
   }
+  if (rule.least_items > 0) schema.set("minLength", static_cast<double>(rule.least_items));
   if (rule.pattern) schema.set("pattern", std::string("^(") + rule.pattern + ")$");
   return schema;
 }

@@ -99,12 +99,13 @@ JsonValue full_scene_json(const SceneFile& scene) {
 
 JsonValue short_scene_json(const SceneFile& scene) {
   JsonValue json = to_json(scene);
-  drop_defaults(json, to_json(SceneFile()), {"levelray", "camera", "objects", "eye", "target"});
+  drop_defaults(json, to_json(SceneFile()),
+                {"levelray", "camera", "objects", "eye", "target", "fov", "film", "size", "samples"});
   if (JsonValue* objects = json.find("objects"))
     for (JsonValue& object : objects->items) {
       ObjectFile standard;
       standard.convert.emplace();
-      drop_defaults(object, to_json(standard), {"material", "kind", "level_set", "mesh"});
+      drop_defaults(object, to_json(standard), {"material", "kind", "albedo", "level_set", "mesh"});
     }
   if (JsonValue* lights = json.find("lights"))
     for (JsonValue& light : lights->items)

@@ -176,7 +176,8 @@ bool is_scene(const std::string& path);
 // `path` of the scene file's folder when it is relative.
 std::string beside_scene(const SceneFile& scene, const std::string& path);
 
-// The scene as JSON: all keys, or those that differ from their defaults and those that must be there.
+// The scene as JSON: all keys, or those that differ from their defaults, that must be there, or that somebody
+// who edits the scene looks for first.
 JsonValue full_scene_json(const SceneFile& scene);
 JsonValue short_scene_json(const SceneFile& scene);
 

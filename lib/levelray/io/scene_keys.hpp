@@ -158,8 +158,8 @@ void describe(Visitor& v, ObjectFile& object) {
         "For --set and messages; unique");
   v.key("id", object.id, within(0, static_cast<double>(largest_id)),
         "In the id channel; 0: its place in the list, from 1");
-  v.key("level_set", object.level_set, any(), "A .vdb; #### stands for the frame's number");
-  v.key("mesh", object.mesh, any(), "A mesh to convert, instead; #### as well");
+  v.key("level_set", object.level_set, not_empty(), "A .vdb; #### stands for the frame's number");
+  v.key("mesh", object.mesh, not_empty(), "A mesh to convert, instead; #### as well");
   v.key("grid", object.grid, any(), "Of a .vdb with several: NAME, NAME[i] or [i]");
   v.key("convert", object.convert, any(), "How the mesh becomes a level set");
   v.key("transform", object.transform, any(), "From the file's space to the world");
@@ -168,8 +168,6 @@ void describe(Visitor& v, ObjectFile& object) {
   v.one_of({"level_set", "mesh"});
   v.require(object.grid.empty() || object.level_set, "grid", "is for level_set, not for mesh");
   v.require(!object.convert || object.mesh, "convert", "is for mesh, not for level_set");
-  v.require(!object.level_set || !object.level_set->empty(), "level_set", "is empty; name a file");
-  v.require(!object.mesh || !object.mesh->empty(), "mesh", "is empty; name a file");
 }
 
 template <class Visitor>
@@ -233,7 +231,7 @@ void describe(Visitor& v, SceneFile& scene) {
   v.key("fps", scene.fps, above(0, 1000), "Frames per second of a movie");
   v.key("camera", scene.camera, any().must(), "The camera");
   v.key("film", scene.film, any(), "The picture");
-  v.key("objects", scene.objects, items(1).must(), "What is seen");
+  v.key("objects", scene.objects, not_empty().must(), "What is seen");
   v.key("lights", scene.lights, any(), "What shines on it");
   v.key("ambient", scene.ambient, at_least(0), "Like a white sky of that radiance that is never seen");
   v.key("sky", scene.sky, any(), "Light of the same colour from everywhere");
