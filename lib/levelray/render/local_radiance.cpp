@@ -36,6 +36,10 @@ void add_light(Shading& shading, const Light& light, std::span<const Vertex> ver
   std::vector<std::size_t> lit;
   std::vector<Vec3d> gain;
   std::vector<WorldRay> rays;
+  lit.reserve(vertices.size());
+  gain.reserve(vertices.size());
+  const bool shadows = shading.shadows && light.casts_shadows;
+  if (shadows) rays.reserve(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const Vertex& v = vertices[i];
     const Incoming in = incoming(light, v);
@@ -43,7 +47,7 @@ void add_light(Shading& shading, const Light& light, std::span<const Vertex> ver
     if (!(added.x > 0 || added.y > 0 || added.z > 0)) continue;
     lit.push_back(i);
     gain.push_back(added);
-    if (!shading.shadows || !light.casts_shadows) continue;
+    if (!shadows) continue;
     // From the ray's last point that is proven to be outside: no offset, hence no acne and no leak.
     WorldRay& ray = rays.emplace_back();
     ray.origin = v.outside;

@@ -28,6 +28,9 @@ Vec3d transmittance(const Vec3d& tint, double length) {
 std::vector<Vertex> first_vertices(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int sample,
                                    std::vector<std::size_t>& pixels) {
   std::vector<Vertex> vertices;
+  const auto most = static_cast<std::size_t>((tile.x_end - tile.x_begin) * (tile.y_end - tile.y_begin));
+  vertices.reserve(most);
+  pixels.reserve(most);
   const std::uint64_t salt = mix_hash(shading.seed, static_cast<std::uint64_t>(sample));
   std::uint64_t hits = 0;
   for (int y = tile.y_begin; y < tile.y_end; ++y)
@@ -111,6 +114,7 @@ void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int 
   std::vector<Vertex> vertices = first_vertices(shading, tile, gbuffer, sample, pixels);
   std::vector<Vec3d> totals(pixels.size(), Vec3d(0, 0, 0));
   std::vector<float> alphas;
+  alphas.reserve(vertices.size());
   for (const Vertex& v : vertices) alphas.push_back(sky.visible ? 1 : static_cast<float>(v.coverage));
 
   for (bool first = true; !vertices.empty(); first = false) {
@@ -122,6 +126,7 @@ void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int 
       total += v.weight * (radiance[i] * v.coverage);
       if (v.coverage < 1 && (!first || sky.visible))
         total += v.weight * sky.radiance * (1 - v.coverage); // behind a ground that fades there is the sky
+      if (v.material->kind != MaterialKind::mirror && v.material->kind != MaterialKind::glass) continue;
       scattered.clear();
       scatter(shading, v, scattered);
       for (const PathRay& ray : scattered) {
