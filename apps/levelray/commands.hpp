@@ -12,6 +12,7 @@ using Work = std::function<void()>;
 void add_convert(CLI::App& program, Work& run);
 void add_render(CLI::App& program, Work& run);
 void add_info(CLI::App& program, Work& run);
+void add_compare(CLI::App& program, Work& run);
 void add_scene(CLI::App& program, Work& run);
 
 } // namespace levelray

@@ -102,6 +102,7 @@ void run(int argc, char** argv) {
   add_convert(program, work);
   add_render(program, work);
   add_info(program, work);
+  add_compare(program, work);
   add_scene(program, work);
   program.require_subcommand(1);
   program.set_version_flag("--version", version_text);

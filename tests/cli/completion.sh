@@ -20,6 +20,8 @@ expect() { # expect WANTED WORD...: completing the last WORD offers WANTED and n
 expect convert ""
 expect render r
 expect info in
+expect compare co
+expect --hardfail compare a.exr b.exr --h
 expect --resolution convert --res
 expect --sign convert in.obj out.vdb --
 expect --intersector render in.vdb --i

@@ -22,7 +22,7 @@ TEST_CASE("wrong usage ends with 2 and one line that says what is legal") {
   const std::string mesh = folder / "box.obj", vdb = folder / "out.vdb", png = folder / "out.png";
   write_text(mesh, box_obj(3, 2, 1));
   const std::vector<Row> rows{
-      {{}, "convert, render, info"},
+      {{}, "convert, render, info, compare"},
       {{"covert", mesh, vdb}, "did you mean \"convert\""},
       {{"--nonsense"}, "--nonsense"},
       {{"convert"}, "IN"},
@@ -94,7 +94,7 @@ TEST_CASE("wrong usage ends with 2 and one line that says what is legal") {
 
 TEST_CASE("help begins with examples, on standard output") {
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {"--help"}, {"convert", "--help"}, {"render", "--help"}, {"info", "-h"}}) {
+           {"--help"}, {"convert", "--help"}, {"render", "--help"}, {"info", "-h"}, {"compare", "--help"}}) {
     const RunResult result = run_program(arguments);
     CHECK(result.code == 0);
     CHECK(result.err.empty());

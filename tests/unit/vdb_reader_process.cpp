@@ -2,6 +2,7 @@
 #include "levelray/core/error.hpp"
 #include "levelray/vdb/vdb_file.hpp"
 #include "support/catch.hpp"
+#include "support/fake_reader.hpp"
 #include "support/sphere_grid.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -14,30 +15,6 @@ using namespace levelray;
 using namespace levelray::test;
 
 namespace {
-
-// Puts a shell script in the reader's place for a scope.
-class FakeReader {
- public:
-  FakeReader(const TemporaryFolder& dir, const std::string& script) {
-    const std::string path = dir / "reader";
-    std::ofstream(path) << "#!/bin/sh\n" << script << "\n";
-    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
-    if (const char* old = std::getenv(variable)) old_ = old;
-    ::setenv(variable, path.c_str(), 1);
-  }
-  ~FakeReader() {
-    if (old_.empty())
-      ::unsetenv(variable);
-    else
-      ::setenv(variable, old_.c_str(), 1);
-  }
-  FakeReader(const FakeReader&) = delete;
-  FakeReader& operator=(const FakeReader&) = delete;
-
- private:
-  static constexpr const char* variable = "LEVELRAY_VDB_READER";
-  std::string old_;
-};
 
 std::pair<ErrorKind, std::string> error_of(const std::string& path, const VdbReadOptions& options = {}) {
   try {
@@ -106,7 +83,7 @@ TEST_CASE("whatever the reader does, the parent ends with one line of the right 
   write_vdb(dir / "a.vdb", sphere_grid(5));
   const std::string path = dir / "a.vdb";
   const auto answer = [&](const std::string& script, const VdbReadOptions& options = {}) {
-    const FakeReader fake(dir, script);
+    const FakeReader fake("LEVELRAY_VDB_READER", dir, script);
     return error_of(path, options);
   };
   using Expected = std::pair<ErrorKind, std::string>;

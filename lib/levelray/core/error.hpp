@@ -15,6 +15,7 @@ enum class ErrorKind : int {
   usage = 2,        // an option, a name or a combination that is not legal
   bad_input = 3,    // a file that cannot be used
   limit = 5,        // memory, time or size limits
+  mismatch = 6,     // what was compared differs by more than was allowed
   cannot_write = 74 // the output could not be written
 };
 

@@ -79,7 +79,7 @@ std::string encode_exr(const Image& image, const ExrOptions& options) {
     std::list<std::vector<std::uint32_t>> numbers;
     const auto row = static_cast<std::size_t>(image.width);
     for (const Image::Channel& channel : image.channels) {
-      if (is_colour(channel.name)) {
+      if (is_colour(channel.name) && !options.all_float) {
         std::vector<half>& values = halves.emplace_back(channel.values.size());
         std::transform(channel.values.begin(), channel.values.end(), values.begin(), to_half);
         header.channels().insert(channel.name, Imf::Channel(Imf::HALF));

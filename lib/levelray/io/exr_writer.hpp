@@ -12,6 +12,7 @@ struct ExrOptions {
   const Camera* camera = nullptr; // when given: worldToCamera, worldToNDC and the screen window
   std::string software;           // e.g. "levelray 1.2.3"; empty: no such attribute
   std::string comments;           // e.g. what the channels mean; empty: none
+  bool all_float = false;         // R, G, B, A as float, too: values as they are
 };
 
 // The bytes of a scan-line OpenEXR file with ZIP compression: channels R, G, B, A as half (values beyond its

@@ -7,80 +7,15 @@ namespace levelray {
 
 namespace {
 
-constexpr std::uint64_t opening = 0x31524456524C5645; // changes with the layout
-constexpr std::uint64_t closing = 0x21646E652D656874;
-enum Status : std::uint8_t { status_error = 0, status_file = 1 };
+constexpr std::uint64_t layout = 0x31644972676C7276; // changes with what is sent
 
 constexpr int node_limit = 1 << 27; // node coordinates, so that samples fit 32 bits
-constexpr std::uint32_t text_limit = 4096;
-constexpr std::uint32_t list_limit = 100000;
-
-class Out {
- public:
-  explicit Out(const ByteSink& write) : write_(write) {}
-  template <class T>
-  void value(const T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    write_(&v, sizeof v);
-  }
-  void text(const std::string& s) {
-    const auto length = static_cast<std::uint32_t>(std::min<std::size_t>(s.size(), text_limit));
-    value(length);
-    write_(s.data(), length);
-  }
-  template <class Vector>
-  void array(const Vector& v) {
-    if (!v.empty()) write_(v.data(), v.size() * sizeof v[0]);
-  }
-
- private:
-  const ByteSink& write_;
-};
-
-class In {
- public:
-  In(const ByteSource& read, const std::string& path) : read_(read), path_(path) {}
-  [[noreturn]] void fail(const char* what) const {
-    throw Error(ErrorKind::bad_input, path_ + ": the reader process answered nonsense (" + what +
-                                          "); the file is damaged or hostile");
-  }
-  void check(bool good, const char* what) const {
-    if (!good) fail(what);
-  }
-  template <class T>
-  T value() {
-    T v;
-    read_(&v, sizeof v);
-    return v;
-  }
-  std::string text() {
-    const auto length = value<std::uint32_t>();
-    check(length <= text_limit, "a text's length");
-    std::string s(length, '\0');
-    read_(s.data(), length);
-    return printable(s, text_limit);
-  }
-  std::uint32_t count() {
-    const auto n = value<std::uint32_t>();
-    check(n <= list_limit, "a list's length");
-    return n;
-  }
-  template <class Vector>
-  void array(Vector& v, std::uint64_t size) {
-    v.resize(size);
-    if (size) read_(v.data(), size * sizeof v[0]);
-  }
-
- private:
-  const ByteSource& read_;
-  const std::string& path_;
-};
 
 struct NodeMasks {
   std::uint64_t stored, inside;
 };
 
-void send_grid(Out& out, const BlockGrid& grid) {
+void send_grid(StreamOut& out, const BlockGrid& grid) {
   for (int a = 0; a < 3; ++a) {
     out.value(grid.transform.origin[a]);
     out.value(std::int32_t{grid.node_min[a]});
@@ -97,7 +32,7 @@ void send_grid(Out& out, const BlockGrid& grid) {
   out.array(grid.active);
 }
 
-void receive_table(In& in, BlockGrid& grid, std::uint64_t nodes, std::uint64_t blocks,
+void receive_table(StreamIn& in, BlockGrid& grid, std::uint64_t nodes, std::uint64_t blocks,
                    std::uint64_t entries) {
   in.array(grid.node_table, entries);
   std::vector<NodeMasks> masks;
@@ -122,7 +57,7 @@ void receive_table(In& in, BlockGrid& grid, std::uint64_t nodes, std::uint64_t b
   in.check(grid.nodes.size() == nodes && first_block == blocks, "the number of blocks");
 }
 
-BlockGrid receive_grid(In& in, std::uint64_t max_bytes) {
+BlockGrid receive_grid(StreamIn& in, std::uint64_t max_bytes) {
   BlockGrid grid;
   double entries = 1;
   for (int a = 0; a < 3; ++a) {
@@ -162,46 +97,24 @@ BlockGrid receive_grid(In& in, std::uint64_t max_bytes) {
 
 } // namespace
 
-void send_error(const ByteSink& write, ErrorKind kind, const std::string& text) {
-  Out out(write);
-  out.value(opening);
-  out.value(status_error);
-  out.value(static_cast<std::int32_t>(kind));
-  out.text(text);
-  out.value(closing);
-}
-
 void send_file(const ByteSink& write, const VdbFile& file, bool with_grid) {
-  Out out(write);
-  out.value(opening);
-  out.value(status_file);
-  out.value(static_cast<std::uint32_t>(std::min<std::size_t>(file.grids.size(), list_limit)));
-  for (std::size_t i = 0; i < std::min<std::size_t>(file.grids.size(), list_limit); ++i) {
+  StreamOut out(write, layout);
+  const std::uint32_t grids = out.count(file.grids.size());
+  for (std::uint32_t i = 0; i < grids; ++i) {
     const VdbGridInfo& info = file.grids[i];
     for (const std::string* s : {&info.name, &info.type, &info.grid_class, &info.note}) out.text(*s);
     out.value(info.active_samples);
     out.value(info.voxel_size);
   }
-  out.value(static_cast<std::uint32_t>(file.warnings.size()));
-  for (const std::string& warning : file.warnings) out.text(warning);
+  const std::uint32_t warnings = out.count(file.warnings.size());
+  for (std::uint32_t i = 0; i < warnings; ++i) out.text(file.warnings[i]);
   if (with_grid) send_grid(out, file.grid);
-  out.value(closing);
+  out.close();
 }
 
 VdbFile receive_file(const ByteSource& read, const std::string& path, std::uint64_t max_bytes,
                      bool with_grid) {
-  In in(read, path);
-  in.check(in.value<std::uint64_t>() == opening, "its first bytes");
-  const auto status = in.value<std::uint8_t>();
-  if (status == status_error) {
-    const auto kind = in.value<std::int32_t>();
-    const std::string text = in.text();
-    for (const ErrorKind known : {ErrorKind::bad_input, ErrorKind::limit, ErrorKind::failed})
-      if (kind == static_cast<std::int32_t>(known)) throw Error(known, text);
-    in.fail("an error of unknown kind");
-  }
-  in.check(status == status_file, "its status");
-
+  StreamIn in(read, path, layout);
   VdbFile file;
   const std::uint32_t grids = in.count();
   for (std::uint32_t i = 0; i < grids; ++i) {
@@ -214,7 +127,7 @@ VdbFile receive_file(const ByteSource& read, const std::string& path, std::uint6
   const std::uint32_t warnings = in.count();
   for (std::uint32_t i = 0; i < warnings; ++i) file.warnings.push_back(in.text());
   if (with_grid) file.grid = receive_grid(in, max_bytes);
-  in.check(in.value<std::uint64_t>() == closing, "its last bytes");
+  in.close();
   return file;
 }
 

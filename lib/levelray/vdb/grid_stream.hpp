@@ -1,22 +1,12 @@
 // What the limited reader process sends to its parent, which believes none of it unchecked.
 #pragma once
 
-#include "levelray/core/error.hpp"
+#include "levelray/io/reader_stream.hpp"
 #include "levelray/vdb/vdb_file.hpp"
 
-#include <cstddef>
-#include <functional>
-#include <optional>
 #include <string>
 
 namespace levelray {
-
-// Calls write(bytes, count) for consecutive pieces.
-using ByteSink = std::function<void(const void* bytes, std::size_t count)>;
-// Fills `count` bytes, or throws.
-using ByteSource = std::function<void(void* bytes, std::size_t count)>;
-
-void send_error(const ByteSink& write, ErrorKind kind, const std::string& text);
 
 // `with_grid`: also the grid, whose nodes and blocks must be in the order of the table, as from_openvdb makes
 // them.

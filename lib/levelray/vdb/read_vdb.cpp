@@ -1,15 +1,10 @@
 #include "levelray/core/error.hpp"
 #include "levelray/grid/complete_blocks.hpp"
+#include "levelray/io/limited_process.hpp"
 #include "levelray/vdb/level_set_check.hpp"
 #include "levelray/vdb/read_local.hpp"
 #include "levelray/vdb/reader_process.hpp"
 #include "levelray/vdb/vdb_file.hpp"
-
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 
 namespace levelray {
 
@@ -17,21 +12,7 @@ namespace {
 
 // Turns down what is plainly no OpenVDB file, before OpenVDB sees it.
 void check_is_vdb(const std::string& path) {
-  const auto fail = [&](const std::string& reason) {
-    throw Error(ErrorKind::bad_input, path + ": " + reason);
-  };
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
-  if (status.type() == std::filesystem::file_type::directory) fail("is a directory");
-  if (status.type() != std::filesystem::file_type::regular) fail("is not a regular file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail(std::string("cannot be opened: ") + std::strerror(errno));
-  constexpr std::array<char, 8> magic{' ', 'B', 'D', 'V', 0, 0, 0, 0};
-  std::array<char, 8> head{};
-  stream.read(head.data(), head.size());
-  if (stream.gcount() == 0) fail("empty file");
-  if (head != magic) fail("not an OpenVDB file");
+  check_first_bytes(path, std::string_view(" BDV\0\0\0\0", 8), "an OpenVDB file");
 }
 
 } // namespace

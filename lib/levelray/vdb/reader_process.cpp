@@ -1,167 +1,21 @@
 #include "levelray/vdb/reader_process.hpp"
 
-#include "levelray/core/error.hpp"
-#include "levelray/core/parallel.hpp"
+#include "levelray/io/limited_process.hpp"
 #include "levelray/vdb/grid_stream.hpp"
 
-#include <cerrno>
-#include <chrono>
-#include <climits>
-#include <csignal>
-#include <cstring>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-extern char** environ;
 
 namespace levelray {
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-std::string find_reader() {
-  if (const char* given = std::getenv("LEVELRAY_VDB_READER"); given && *given) return given;
-  char buffer[PATH_MAX];
-  const ssize_t length = ::readlink("/proc/self/exe", buffer, sizeof buffer);
-  if (length > 0) {
-    std::string folder(buffer, static_cast<std::size_t>(length));
-    folder.resize(folder.rfind('/') + 1);
-    for (const char* place : {"", "../libexec/levelray/", "../lib/levelray/", "../lib/", "../../lib/"}) {
-      const std::string candidate = folder + place + "levelray-vdb-reader";
-      if (::access(candidate.c_str(), X_OK) == 0) return candidate;
-    }
-  }
-  if (::access(LEVELRAY_LIBEXECDIR "/levelray-vdb-reader", X_OK) == 0)
-    return LEVELRAY_LIBEXECDIR "/levelray-vdb-reader";
-  throw Error(ErrorKind::failed, "cannot find the program levelray-vdb-reader that reads .vdb files safely; "
-                                 "set LEVELRAY_VDB_READER to its "
-                                 "path, or trust the input to read it without");
-}
-
-// A started reader; killed and waited for at the end of its life.
-class Child {
- public:
-  explicit Child(const std::vector<std::string>& arguments) {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) fail(errno);
-    read_end_ = ends[0];
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], 1);
-    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
-
-    // A group of its own: Ctrl-C reaches the parent alone, which ends the child. No signal stays blocked.
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    sigset_t none, all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes,
-                             POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-
-    std::vector<char*> argv;
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    const int error = ::posix_spawn(&pid_, argv[0], &actions, &attributes, argv.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[1]);
-    if (error) {
-      pid_ = -1;
-      ::close(read_end_);
-      throw Error(ErrorKind::failed, fmt::format("cannot start {}: {}", arguments[0], std::strerror(error)));
-    }
-  }
-  ~Child() {
-    stop();
-    ::close(read_end_);
-  }
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  int read_end() const { return read_end_; }
-
-  // Ends the child if it still runs; returns what waitpid says of it (0 when nobody can tell).
-  int stop() {
-    if (pid_ < 0) return status_;
-    ::kill(pid_, SIGKILL);
-    return wait();
-  }
-  int wait() {
-    if (pid_ < 0) return status_;
-    while (::waitpid(pid_, &status_, 0) < 0)
-      if (errno != EINTR) {
-        status_ = 0;
-        break;
-      }
-    pid_ = -1;
-    return status_;
-  }
-
- private:
-  [[noreturn]] static void fail(int error) {
-    throw Error(ErrorKind::failed,
-                fmt::format("cannot start the reader of .vdb files: {}", std::strerror(error)));
-  }
-  pid_t pid_ = -1;
-  int read_end_ = -1;
-  int status_ = 0;
-};
-
-struct StreamEnded {}; // the child closed its end too early
-
-} // namespace
-
 VdbFile read_in_child(const std::string& path, const VdbReadOptions& options, bool list_only) {
-  const double seconds = std::min(std::max(options.timeout_seconds, 0.0), 1e6);
-  Child child({find_reader(), list_only ? "list" : "read", path, options.grid,
-               std::to_string(options.max_memory), fmt::format("{:.3f}", seconds)});
-  const auto deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  const auto too_slow = [&] {
-    return Error(ErrorKind::limit,
-                 fmt::format("{}: reading took longer than {:.6g} s and was stopped", path, seconds));
-  };
-
-  const ByteSource read = [&](void* bytes, std::size_t count) {
-    char* at = static_cast<char*>(bytes);
-    while (count) {
-      check_cancel();
-      const auto left =
-          std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-      if (left < 0) throw too_slow();
-      pollfd ready{child.read_end(), POLLIN, 0};
-      const int changed = ::poll(&ready, 1, static_cast<int>(std::min<long long>(left + 1, 100)));
-      if (changed == 0 || (changed < 0 && errno == EINTR)) continue;
-      const ssize_t got = ::read(child.read_end(), at, count);
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) throw StreamEnded();
-      at += got;
-      count -= static_cast<std::size_t>(got);
-    }
-  };
-  try {
-    return receive_file(read, path, options.max_memory, !list_only);
-  } catch (const StreamEnded&) {
-    const int status = child.wait();
-    check_cancel();
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) throw too_slow();
-    if (WIFSIGNALED(status))
-      throw Error(ErrorKind::bad_input,
-                  fmt::format("{}: reader crashed (signal {}); the file is damaged or hostile", path,
-                              WTERMSIG(status)));
-    throw Error(ErrorKind::bad_input,
-                fmt::format("{}: the reader ended without an answer (status {})", path, WEXITSTATUS(status)));
-  }
+  VdbFile file;
+  read_in_process({"levelray-vdb-reader", "LEVELRAY_VDB_READER", ".vdb files"},
+                  {list_only ? "list" : "read", path, options.grid, std::to_string(options.max_memory),
+                   fmt::format("{:.3f}", options.timeout_seconds)},
+                  path, options.timeout_seconds, [&](const ByteSource& source) {
+                    file = receive_file(source, path, options.max_memory, !list_only);
+                  });
+  return file;
 }
 
 } // namespace levelray

@@ -6,10 +6,8 @@
 
 namespace levelray {
 
-// Starts the program `levelray-vdb-reader`, which limits itself (address space, CPU time, no files, no core
-// dumps), reads the file and sends the grid through a pipe. It is searched at $LEVELRAY_VDB_READER, beside
-// the running program, in ../libexec/levelray, ../lib/levelray, ../lib and ../../lib from there, and where it
-// is installed.
+// Lets the program `levelray-vdb-reader` read the file under limits and send the grid through a pipe; see
+// io/limited_process.hpp for where it is searched ($LEVELRAY_VDB_READER first) and what may go wrong.
 //
 // As read_vdb_here, or with `list_only` as list_vdb_here; besides what these throw: Error(bad_input) when the
 // reader crashed, Error(limit) when it took longer than options.timeout_seconds or more memory than
