@@ -114,7 +114,8 @@ TEST_CASE("lossy compressions are read as OpenEXR reads them") {
 TEST_CASE("the first of several parts is read, with a warning") {
   const TemporaryFolder dir;
   const Picture first = sample_picture();
-  write_parts(dir / "a.exr", {first, blank_picture(3, 2, {{"Y", Type::half}})});
+  const Picture second = blank_picture({{1, 1}, {3, 2}}, first.display_window, {{"Y", Type::half}});
+  write_parts(dir / "a.exr", {first, second});
   const ExrFile file = read_exr(dir / "a.exr");
   check_same(file.picture, first);
   REQUIRE(file.warnings.size() == 1);
@@ -186,15 +187,15 @@ TEST_CASE("headers that lie are refused before memory is taken") {
   check_refused(path, "sides must be 1 to 1048576");
   with_window({5, 0, 4, 3});
   check_refused(path, "sides must be 1 to 1048576");
-  with_window({0, 0, 7, 999999});
-  check_refused(path, "announces 1000000 chunks");
+  with_window({0, 0, 7, 999});
+  check_refused(path, "announces 1000 chunks");
   with_window({0, 0, (1 << 20) - 1, 3});
   check_refused(path, "times its size");
 
   const Picture picture = blank_picture(8, 4, {{"Y", Type::half}});
   write_exr(path, picture);
-  patch(path, std::string("lineOrder\0", 10), std::string("dataWindo\0", 10));
-  check_refused(path, "damaged"); // OpenEXR's own word: an attribute of a wrong type or missing
+  patch(path, "displayWindow", "displayWindoW");
+  check_refused(path, "attribute \"displayWindow\" is missing");
   write_exr(path, picture);
   patch(path, std::string("compression\0compression\0\1\0\0\0", 28),
         std::string("compression\0compression\0\1\0\0\x7f", 28));
