@@ -27,17 +27,15 @@ void Convert::run() const {
   std::vector<std::string> outputs;
   check_output(output, input.path, {".vdb"}, outputs);
   if (!common.json.empty() && common.json != "-") check_output(common.json, input.path, {}, outputs);
-  std::error_code ignored;
-  if (std::filesystem::exists(input.path, ignored) && is_vdb(input.path))
-    throw Error(ErrorKind::usage,
-                printable(input.path, 300) + ": is a level set already; convert takes a mesh");
-
+  conversion.check();
   const ThreadLimit threads(common.threads);
   const Stopwatch total;
   Progress progress(common.quiet);
-  const LoadedGrid loaded = convert_mesh(input, conversion, common, progress, [](const ConvertPlan& plan) {
-    check_vdb_voxel_size(plan.voxel_size);
-  });
+  const LoadedGrid loaded =
+      is_vdb(input.path) ? load_grid(input, conversion, common, progress)
+                         : convert_mesh(input, conversion, common, progress, [](const ConvertPlan& plan) {
+                             check_vdb_voxel_size(plan.voxel_size);
+                           });
 
   const Stopwatch write;
   VdbWriteOptions options;
@@ -50,19 +48,20 @@ void Convert::run() const {
     print(fmt::format("wrote {}: grid \"{}\", {} active samples, {}, {}\n", printable(output, 300),
                       loaded.grid.name, with_commas(loaded.grid.active_sample_count()),
                       bytes_text(std::filesystem::file_size(output)), duration_text(total.ms() / 1000)));
-  const ConvertReport& report = *loaded.converted;
-  Json json = {{"input", mesh_json(*loaded.mesh)},
-               {"sign",
-                {{"method", sign_method_names()[static_cast<std::size_t>(report.sign)]},
-                 {"reason", report.sign_reason}}},
-               {"grid", grid_json(loaded.grid)},
-               {"ms",
-                {{"read", loaded.read_ms},
-                 {"distance", report.distance_ms},
-                 {"sign", report.sign_ms},
-                 {"write", write_ms},
-                 {"total", total.ms()}}},
-               {"warnings", loaded.warnings}};
+  Json json = Json::object(), ms = {{"read", loaded.read_ms}};
+  if (loaded.converted) {
+    const ConvertReport& report = *loaded.converted;
+    json["input"] = mesh_json(*loaded.mesh);
+    json["sign"] = {{"method", sign_method_names()[static_cast<std::size_t>(report.sign)]},
+                    {"reason", report.sign_reason}};
+    ms["distance"] = report.distance_ms;
+    ms["sign"] = report.sign_ms;
+  }
+  ms["write"] = write_ms;
+  ms["total"] = total.ms();
+  json["grid"] = grid_json(loaded.grid);
+  json["ms"] = ms;
+  json["warnings"] = loaded.warnings;
   add_field_facts(json, loaded);
   write_json(common, json);
 }
@@ -71,15 +70,21 @@ void Convert::run() const {
 
 void add_convert(CLI::App& program, Work& run) {
   auto options = std::make_shared<Convert>();
-  CLI::App& command = *program.add_subcommand("convert", "Convert a mesh to an OpenVDB level set");
+  CLI::App& command =
+      *program.add_subcommand("convert", "Convert a mesh, or a foreign .vdb, to an OpenVDB level set");
   command.footer(R"(Examples:
   levelray convert statue.ply statue.vdb
   levelray convert statue.ply statue.vdb --resolution 1024
   levelray convert part.stl part.vdb --units mm --voxel 0.5mm --band 4vx
   levelray convert scan.obj scan.vdb --sign winding --json report.json
+  levelray convert flag.ply flag.vdb --thicken 1.5vx
+  levelray convert fluid_data_0042.vdb liquid.vdb --grid phi
 
-Converts a mesh (OBJ, PLY, STL, OFF) to an OpenVDB level set: exact distances within a narrow band.)");
-  command.add_option("IN", options->input.path, "The mesh; -: standard input (needs --format)")->required();
+Converts a mesh (OBJ, PLY, STL, OFF) to an OpenVDB level set: exact distances within a narrow band. Of a .vdb it takes one
+level set, and makes distances of its values where they are none (--redistance).)");
+  command
+      .add_option("IN", options->input.path, "A mesh or a .vdb; -: a mesh on standard input (needs --format)")
+      ->required();
   command.add_option("OUT", options->output, "The .vdb to write")->required();
   options->conversion.add_to(command);
   command.add_flag("--half", options->half, "Store 16-bit floats: half the size, values to 11 bits")

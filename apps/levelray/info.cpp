@@ -112,6 +112,7 @@ Json Info::vdb_info() const {
       const Json details = grid_json(grid);
       entry["background"] = grid.background;
       entry["half_width_voxels"] = grid.half_width_voxels();
+      entry["field"] = field_json(file.facts);
       entry["origin"] = {transform.origin.x, transform.origin.y, transform.origin.z};
       entry["index_bounds"] = box_json(Vec3d(box.min), Vec3d(box.max));
       entry["bounds"] = box_json(transform.to_world(Vec3d(box.min)), transform.to_world(Vec3d(box.max)));

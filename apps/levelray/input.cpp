@@ -52,11 +52,12 @@ bool is_vdb(const std::string& path) {
   return file.read(first, 8) && std::string_view(first, 8) == std::string_view(" BDV\0\0\0\0", 8);
 }
 
-LoadedMesh load_mesh(const InputOptions& options) {
+LoadedMesh load_mesh(const InputOptions& options, bool sheet) {
   const Stopwatch watch;
   LoadedMesh loaded;
   PrepareOptions prepare;
   prepare.trust_orientation = options.trust_orientation;
+  prepare.sheet = sheet;
   MeshFile file = read_mesh(options.path, options.mesh_options());
   try {
     loaded.prepared = prepare_mesh(file.mesh, prepare);
@@ -81,7 +82,7 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
                         void (*check_plan)(const ConvertPlan&)) {
   conversion.check();
   parse_unit(input.units);
-  LoadedMesh mesh = load_mesh(input);
+  LoadedMesh mesh = load_mesh(input, !conversion.thicken.empty());
   ConvertOptions options = conversion.resolve(mesh.prepared.report.bounds, input);
   ConvertedGrid converted;
   try {
@@ -114,6 +115,8 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
   loaded.warnings.insert(loaded.warnings.end(), loaded.converted->warnings.begin(),
                          loaded.converted->warnings.end());
   loaded.read_ms = mesh.read_ms;
+  if (conversion.redistance != "auto")
+    loaded.warnings.push_back("--redistance is for .vdb files: no effect on a mesh");
   for (const std::string& warning : loaded.warnings) print_warning(warning);
   if (const double thickness = loaded.converted->thickness; common.talks() && thickness > 0)
     print(fmt::format("sheet: {:.4g}{} thick ({:.3g} voxels), half of it on each side of the mesh\n",
@@ -130,12 +133,13 @@ LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& convers
                      const CommonOptions& common, Progress& progress) {
   if (!is_vdb(input.path)) return convert_mesh(input, conversion, common, progress);
   const Stopwatch watch;
-  VdbFile file = read_vdb(input.path, input.vdb_options());
+  VdbFile file = read_vdb(input.path, conversion.vdb_options(input));
   LoadedGrid loaded;
+  loaded.redistanced = file.redistanced;
   loaded.grid = std::move(file.grid);
   loaded.warnings = std::move(file.warnings);
   loaded.read_ms = watch.ms();
-  if (conversion.given())
+  if (conversion.given_for_meshes() || (conversion.band != "3vx" && !loaded.redistanced))
     loaded.warnings.push_back(
         "--resolution, --voxel, --band, --sign and --thicken are for meshes: no effect on a .vdb");
   for (const std::string& warning : loaded.warnings) print_warning(warning);
@@ -144,6 +148,12 @@ LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& convers
                       printable(input.path, 300), printable(loaded.grid.name, 100),
                       with_commas(loaded.grid.active_sample_count()), loaded.grid.transform.voxel_size,
                       loaded.grid.half_width_voxels()));
+  if (const auto& r = loaded.redistanced; r && r->before.is_distance() && common.talks())
+    print(fmt::format(
+        "redistanced: {} surface cells; the surface moved by {:.2g} voxel (rms; at most {:.2g}); median "
+        "gradient {:.2f}, was {:.2f}\n",
+        with_commas(r->surface_cells), r->rms_moved_voxels, r->largest_moved_voxels, r->after.gradient_median,
+        r->before.gradient_median));
   return loaded;
 }
 
@@ -176,10 +186,27 @@ Json grid_json(const BlockGrid& grid) {
           {"bytes", grid.bytes()}};
 }
 
+Json field_json(const FieldFacts& facts) {
+  return {{"is_distance", facts.is_distance()},
+          {"looks_like_voxel_units", facts.looks_like_voxel_units()},
+          {"gradient",
+           {{"median", facts.gradient_median}, {"p5", facts.gradient_low}, {"p95", facts.gradient_high}}},
+          {"gradients_measured", facts.gradients},
+          {"steep_share", facts.steep_share},
+          {"crossings", facts.crossings}};
+}
+
 void add_field_facts(Json& json, const LoadedGrid& loaded) {
   if (loaded.converted && loaded.converted->thickness > 0)
     json["sheet"] = {{"thickness", loaded.converted->thickness},
                      {"voxels", loaded.converted->thickness / loaded.grid.transform.voxel_size}};
+  if (const auto& r = loaded.redistanced)
+    json["redistanced"] = {
+        {"surface_cells", r->surface_cells},
+        {"moved_voxels", {{"rms", r->rms_moved_voxels}, {"largest", r->largest_moved_voxels}}},
+        {"before", field_json(r->before)},
+        {"after", field_json(r->after)},
+        {"ms", r->ms}};
 }
 
 void write_json(const CommonOptions& common, const Json& json) {

@@ -27,13 +27,15 @@ struct LoadedMesh {
   double read_ms = 0; // file to prepared mesh
 };
 
-// Reads and prepares a mesh; with --strict, throws Error(bad_input) for one that has flaws.
-LoadedMesh load_mesh(const InputOptions& options);
+// Reads and prepares a mesh; with --strict, throws Error(bad_input) for one that has flaws. `sheet`: it need
+// not have an inside (PrepareOptions).
+LoadedMesh load_mesh(const InputOptions& options, bool sheet = false);
 
 struct LoadedGrid {
   BlockGrid grid;
-  std::optional<MeshReport> mesh;         // when it was converted
-  std::optional<ConvertReport> converted; // when it was converted
+  std::optional<MeshReport> mesh;              // when it was converted
+  std::optional<ConvertReport> converted;      // when it was converted
+  std::optional<RedistanceReport> redistanced; // when it was read and --redistance did that
   std::vector<std::string> warnings;
   double read_ms = 0;
 };
@@ -57,7 +59,10 @@ std::string describe_mesh(const MeshReport& report, const std::string& units);
 Json mesh_json(const MeshReport& report); // the `input` of convert
 Json grid_json(const BlockGrid& grid);    // {voxel_size, dims, blocks, active_samples, bytes}
 
-// Adds what was done to make the field, when something was: `sheet` {thickness, voxels} of --thicken.
+Json field_json(const FieldFacts& facts); // whether it is a distance, in numbers
+
+// Adds what was done to make the field, when something was: `sheet` {thickness, voxels} of --thicken,
+// `redistanced` {surface_cells, moved_voxels, before, after, ms}.
 void add_field_facts(Json& json, const LoadedGrid& loaded);
 
 // Writes to --json's file or standard output, if asked.

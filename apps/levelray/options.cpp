@@ -14,6 +14,10 @@ namespace levelray {
 
 namespace fs = std::filesystem;
 
+namespace {
+const std::vector<std::string> redistance_names{"auto", "always", "never"};
+}
+
 void CommonOptions::add_to(CLI::App& command) {
   command.add_option("--threads,-j", threads, "Threads to use; 0: all")->check(CLI::Range(0, 4096));
   command.add_flag("--quiet,-q", quiet, "Print warnings and errors only");
@@ -127,6 +131,24 @@ void ConversionOptions::add_to(CLI::App& command) {
       ->excludes(by_sign)
       ->type_name("R")
       ->group(group);
+  command
+      .add_flag(
+          "--redistance{always}", redistance,
+          "Make distances of a .vdb's values, to where they change sign; =auto (default): where they are "
+          "none; =never: trace them as they are")
+      ->group(group);
+}
+
+VdbReadOptions ConversionOptions::vdb_options(const InputOptions& input) const {
+  VdbReadOptions options = input.vdb_options();
+  constexpr Redistance policies[] = {Redistance::automatic, Redistance::always, Redistance::never};
+  options.redistance = policies[find_name("--redistance", redistance, redistance_names)];
+  const Length width = parse_length("--band", band);
+  if (width.unit != Length::Unit::plain && width.unit != Length::Unit::voxels)
+    throw Error(ErrorKind::usage,
+                "--band " + printable(band, 80) + ": give it in voxels for a .vdb, such as 3vx");
+  options.redistance_half_width_voxels = width.value;
+  return options;
 }
 
 void ConversionOptions::check() const {
@@ -135,6 +157,7 @@ void ConversionOptions::check() const {
   parse_length("--band", band);
   if (!thicken.empty()) parse_length("--thicken", thicken);
   find_name("--sign", sign, sign_method_names());
+  find_name("--redistance", redistance, redistance_names);
 }
 
 Json ConversionOptions::json() const {
@@ -145,6 +168,10 @@ Json ConversionOptions::json() const {
     options["voxel"] = voxel;
   if (!thicken.empty()) options["thicken"] = thicken;
   return options;
+}
+
+Json ConversionOptions::vdb_json() const {
+  return {{"redistance", redistance}, {"band", band}};
 }
 
 ConvertOptions ConversionOptions::resolve(const Box3d& bounds, const InputOptions& input) const {

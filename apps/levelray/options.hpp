@@ -34,25 +34,28 @@ struct InputOptions {
 
   void add_to(CLI::App& command);
   MeshReadOptions mesh_options() const;
-  VdbReadOptions vdb_options() const;
-  Json json() const; // as given
+  VdbReadOptions vdb_options() const; // how to read it as it is
+  Json json() const;                  // as given
   // In bytes: as given (0: no limit, a number beyond all machines), or four fifths of the machine's memory.
   std::uint64_t memory_limit() const;
 };
 
-// How a mesh becomes a grid.
+// How a mesh, or a .vdb whose values are no distances, becomes a grid.
 struct ConversionOptions {
-  std::string voxel, band = "3vx", sign = "auto", thicken;
+  std::string voxel, band = "3vx", sign = "auto", thicken, redistance = "auto";
   int resolution = 256;
 
   void add_to(CLI::App& command);
-  // Whether anything differs from the defaults.
-  bool given() const {
-    return !voxel.empty() || band != "3vx" || sign != "auto" || resolution != 256 || !thicken.empty();
+  // Whether anything differs from the defaults that is for meshes only.
+  bool given_for_meshes() const {
+    return !voxel.empty() || sign != "auto" || resolution != 256 || !thicken.empty();
   }
+  // How to read a .vdb: with --redistance and, in voxels, the --band that this makes. Throws Error(usage).
+  VdbReadOptions vdb_options(const InputOptions& input) const;
   // Checks what can be checked without the mesh: throws Error(usage).
   void check() const;
-  Json json() const; // as given
+  Json json() const;     // of a mesh, as given
+  Json vdb_json() const; // of a .vdb
   // In the units of a mesh with these bounds.
   ConvertOptions resolve(const Box3d& bounds, const InputOptions& input) const;
 };

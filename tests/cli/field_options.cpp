@@ -1,8 +1,10 @@
-// The options that say what a mesh or a field is taken for: --thicken.
+// The options that say what a mesh or a field is taken for: --thicken, --redistance.
+#include "levelray/vdb/vdb_file.hpp"
 #include "support/catch.hpp"
 #include "support/mesh_files.hpp"
 #include "support/read_output.hpp"
 #include "support/run_program.hpp"
+#include "support/sphere_grid.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace levelray::test;
@@ -33,6 +35,7 @@ TEST_CASE("--thicken makes a sheet and states its thickness") {
   CHECK(json["sheet"]["voxels"].get<double>() == Approx(3).epsilon(1e-12));
   CHECK(json["options"]["thicken"] == "1.5vx");
   CHECK(json["hits"].get<int>() > 500);
+  CHECK(json["warnings"].empty()); // holes do not matter to a sheet
 
   // The level set that was written is the same sheet.
   const RunResult info = run_program({"info", folder / "cloth.vdb"});
@@ -50,7 +53,7 @@ TEST_CASE("a sheet without --thicken is told of it; one too thin, or with --sign
   };
   RunResult result = convert({});
   CHECK(result.code == 3);
-  CHECK_THAT(result.err, Catch::Contains("--thicken 1vx for a thin sheet"));
+  CHECK_THAT(result.err, Catch::Contains("--thicken 1.5vx for a thin sheet"));
   result = convert({"--thicken", "0.2vx"});
   CHECK(result.code == 2);
   CHECK_THAT(result.err, Catch::Contains("0.04 thick is thinner than a voxel of 0.1"));
@@ -64,4 +67,104 @@ TEST_CASE("a sheet without --thicken is told of it; one too thin, or with --sign
   result = convert({"--thicken", "0.6vx"});
   CHECK(result.code == 0);
   CHECK_THAT(result.err, Catch::Contains("1.2 voxels thick; below 1.73 it may have holes"));
+}
+
+namespace {
+
+// A ball of 8 voxels of 0.5, dense in a box, in half floats; its distance in voxels, not world units.
+void write_voxel_units(const std::string& path) {
+  using levelray::Box3d, levelray::Vec3d;
+  const auto ball = sphere_field(Vec3d(0.1, -0.2, 0.3), 4);
+  const levelray::BlockGrid grid = sample_grid([&](const Vec3d& p) { return ball(p) / 0.5; }, 0.5, 100,
+                                               Box3d(Vec3d(-7, -6.5, -8), Vec3d(7, 6.5, 8)));
+  levelray::VdbWriteOptions options;
+  options.half = true;
+  levelray::write_vdb(path, grid, options);
+}
+
+} // namespace
+
+TEST_CASE("a field in voxel units is redistanced, and the warning says what it was and what was done") {
+  const TemporaryFolder folder;
+  write_voxel_units(folder / "phi.vdb");
+  const auto render = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", folder / "phi.vdb", "-o", folder / "phi.exr", "--size",
+                                       "64x64",  "--json",           "-"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    RunResult result = run_program(arguments);
+    INFO(result.err);
+    REQUIRE(result.code == 0);
+    return result;
+  };
+  RunResult result = render({});
+  // Percentiles are right to 0.6 %.
+  CHECK_THAT(result.err, Catch::Contains("median length 1.99 instead of 1") ||
+                             Catch::Contains("median length 2.00 instead of 1") ||
+                             Catch::Contains("median length 2.01 instead of 1"));
+  CHECK_THAT(result.err, Catch::Contains("no distances in world units, but near ones in voxels (") &&
+                             Catch::Contains("redistanced, which moved the surface by 0.0"));
+  CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
+  const Json json = Json::parse(result.out);
+  CHECK(json["redistanced"]["before"]["is_distance"] == false);
+  CHECK(json["redistanced"]["before"]["looks_like_voxel_units"] == true);
+  CHECK(json["redistanced"]["after"]["is_distance"] == true);
+  CHECK(json["redistanced"]["after"]["gradient"]["median"].get<double>() == Approx(1).margin(0.03));
+  CHECK(json["redistanced"]["moved_voxels"]["largest"].get<double>() < 0.1);
+  CHECK(json["options"]["redistance"] == "auto");
+  CHECK(json["warnings"].size() == 1);
+
+  result = render({"--redistance=never"});
+  CHECK_THAT(result.err, Catch::Contains("they are traced as they are"));
+  const Json raw = Json::parse(result.out);
+  CHECK(!raw.contains("redistanced"));
+  CHECK(raw["grid"]["active_samples"] > json["grid"]["active_samples"]);
+  // The same ball, but for interpolation: within a pixel along its outline of about 150 pixels.
+  CHECK(std::abs(raw["hits"].get<int>() - json["hits"].get<int>()) < 150);
+
+  CHECK_THAT(render({"--redistance", "--band", "5"}).err, Catch::Contains("redistanced"));
+  CHECK_THAT(render({"--redistance=never", "--band", "5"}).err, Catch::Contains("no effect on a .vdb"));
+}
+
+TEST_CASE("convert makes a level set of distances of a foreign .vdb") {
+  const TemporaryFolder folder;
+  write_voxel_units(folder / "phi.vdb");
+  const RunResult result =
+      run_program({"convert", folder / "phi.vdb", folder / "ball.vdb", "--band", "4vx", "--json", "-"});
+  INFO(result.err);
+  REQUIRE(result.code == 0);
+  const Json json = Json::parse(result.out);
+  CHECK(json["redistanced"]["surface_cells"] > 500);
+  CHECK(!json.contains("sign"));
+  const RunResult info = run_program({"info", folder / "ball.vdb", "--json", "-"});
+  CHECK(info.err.empty());
+  const Json grid = Json::parse(info.out)["grids"][0];
+  CHECK(grid["field"]["is_distance"] == true);
+  CHECK(grid["half_width_voxels"].get<double>() == Approx(4).epsilon(1e-6));
+  CHECK(Json::parse(run_program({"info", folder / "phi.vdb", "--json", "-"})
+                        .out)["grids"][0]["field"]["looks_like_voxel_units"] == true);
+  // What is a distance is told apart, and stays as it is unless asked.
+  const RunResult again = run_program({"convert", folder / "ball.vdb", folder / "again.vdb"});
+  CHECK(again.code == 0);
+  CHECK(again.err.empty());
+  CHECK(again.out.find("redistanced") == std::string::npos);
+  const RunResult asked = run_program({"convert", folder / "ball.vdb", folder / "again.vdb", "--redistance"});
+  CHECK_THAT(asked.out, Catch::Contains("redistanced: ") && Catch::Contains("the surface moved by 0.0"));
+}
+
+TEST_CASE("--redistance takes auto, always and never, and is for .vdb files") {
+  const TemporaryFolder folder;
+  write_text(folder / "cloth.obj", sheet_obj);
+  write_voxel_units(folder / "phi.vdb");
+  RunResult result =
+      run_program({"render", folder / "phi.vdb", "-o", folder / "a.png", "--redistance=alwys"});
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Catch::Contains("did you mean \"always\""));
+  result =
+      run_program({"render", folder / "phi.vdb", "-o", folder / "a.png", "--redistance", "--band", "2mm"});
+  CHECK(result.code == 2);
+  CHECK_THAT(result.err, Catch::Contains("give it in voxels for a .vdb"));
+  result = run_program({"convert", folder / "cloth.obj", folder / "a.vdb", "--thicken", "2vx", "--resolution",
+                        "30", "--redistance"});
+  CHECK(result.code == 0);
+  CHECK_THAT(result.err, Catch::Contains("--redistance is for .vdb files"));
 }

@@ -143,7 +143,7 @@ TEST_CASE("sheets that are too thin are refused, doubtful ones warned of, with w
   options.thicken = 0.04;
   CHECK_THAT(refusal(sheet, options, ErrorKind::usage),
              Contains("0.08 thick is thinner than a voxel of 0.1") &&
-                 Contains("--thicken 0.1 or --voxel 0.04"));
+                 Contains("--thicken 0.15 or --voxel 0.0267"));
   options.thicken = 0.06;
   const ConvertReport report = mesh_to_grid(prepare_mesh(sheet), options).report;
   REQUIRE(report.warnings.size() == 1);
@@ -171,6 +171,17 @@ TEST_CASE("an open sheet without --thicken is told of it") {
   options.resolution = 32;
   CHECK_THAT(refusal(flat, options, ErrorKind::bad_input),
              Contains("no enclosed volume") && Contains("--thicken"));
+}
+
+TEST_CASE("what does not matter to a sheet is not warned of") {
+  PrepareOptions options;
+  options.sheet = true;
+  for (TriangleMesh mesh : {wavy_sheet(4, 9), made::moebius(20), made::inverted(made::box())}) {
+    CHECK(!prepare_mesh(mesh).warnings.empty());
+    CHECK(prepare_mesh(mesh, options).warnings.empty());
+    std::swap(mesh.triangles[0][0], mesh.triangles[0][1]); // clashes with its neighbours
+    CHECK(prepare_mesh(mesh, options).warnings.empty());
+  }
 }
 
 TEST_CASE("a sheet's plan covers what its conversion makes") {

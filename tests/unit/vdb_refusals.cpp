@@ -257,8 +257,10 @@ TEST_CASE("narrow bands and gradients that are not of length 1 are remarked on w
   CHECK(any_contains(Maker().add(ball(1, 1.2f), "a").read_back().file.warnings, "only 1.2 voxels wide"));
   FloatGrid::Ptr steep = ball();
   for (auto it = steep->beginValueOn(); it; ++it) it.setValue(std::min(std::max(*it * 1.5f, -2.99f), 2.99f));
+  const FieldFacts facts = Maker().add(steep, "a").read_back().file.facts;
+  CHECK(facts.gradient_median == Approx(1.5).margin(0.02));
   CHECK(any_contains(Maker().add(steep, "a").read_back().file.warnings,
-                     "instead of 1: the values are no distances"));
+                     fmt::format("have the median length {:.2f} instead of 1", facts.gradient_median)));
   CHECK(Maker().add(ball(), "a").read_back().file.warnings.empty());
 }
 

@@ -106,7 +106,7 @@ double thicken_voxels(const ConvertOptions& options, double voxel_size) {
         ErrorKind::usage,
         fmt::format("a sheet {:.4g} thick is thinner than a voxel of {:.4g} and would be lost in places; try "
                     "--thicken {:.3g} or --voxel {:.3g}",
-                    2 * options.thicken, voxel_size, voxel_size, options.thicken));
+                    2 * options.thicken, voxel_size, 1.5 * voxel_size, options.thicken / 1.5));
   return radius;
 }
 
@@ -136,12 +136,12 @@ void check_inside(const PreparedMesh& mesh, const BlockGrid& grid, double voxel_
   if (report.thickness > 0 && report.inside_samples == 0)
     throw Error(ErrorKind::bad_input,
                 fmt::format("the sheet falls between the samples; try --thicken {:.3g} or --voxel {:.3g}",
-                            voxel_size, report.thickness / 4));
+                            1.5 * voxel_size, report.thickness / 3));
   if (report.sign == SignMethod::unsigned_distance) return;
   if (report.inside_samples == 0)
     throw Error(
         ErrorKind::bad_input,
-        fmt::format("no enclosed volume: no sample lies inside ({}); use --thicken 1vx for a thin sheet, "
+        fmt::format("no enclosed volume: no sample lies inside ({}); use --thicken 1.5vx for a thin sheet, "
                     "--sign unsigned, a closed mesh, or a voxel smaller than {:.4g}",
                     mesh.report.closed ? "the mesh is closed but thinner than a voxel, or has no thickness"
                                        : fmt::format("the mesh has {} open edges", mesh.open_edges.size()),
@@ -151,7 +151,7 @@ void check_inside(const PreparedMesh& mesh, const BlockGrid& grid, double voxel_
   if (!mesh.open_edges.empty() && share < 0.2)
     report.warnings.push_back(fmt::format(
         "only {:.1f} % of the band lies inside: much of this open surface bounds no volume and is lost; "
-        "--thicken 1vx makes a thin sheet of it",
+        "--thicken 1.5vx makes a thin sheet of it",
         100 * share));
   // A few grazed bumps and creases are in every mesh; parts that are thin meet an edge twice in a good share
   // of their blocks.
@@ -308,7 +308,7 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
     report.warnings.push_back(
         fmt::format("the sheet is {:.3g} voxels thick; below {:.3g} it may have holes: try "
                     "--thicken {:.3g} or --voxel {:.3g}",
-                    2 * radius, safe_thickness_voxels, plan.voxel_size, options.thicken));
+                    2 * radius, safe_thickness_voxels, 1.5 * plan.voxel_size, options.thicken / 1.5));
   if (radius > 0 && mesh.open_edges.empty() && mesh.report.closed)
     report.warnings.push_back("the mesh is closed: its sheet is a hollow shell along the surface");
   if (boundary.many() && (report.sign == SignMethod::winding || report.sign == SignMethod::winding_abs))

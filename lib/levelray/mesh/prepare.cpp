@@ -95,7 +95,7 @@ void warn(PreparedMesh& out, const Duplicates& duplicates, const PrepareOptions&
   const auto add = [&](std::string text) { out.warnings.push_back(std::move(text)); };
   const auto faces = [](std::uint64_t n) { return counted(n, "face", "faces"); };
   const auto edges = [](std::uint64_t n) { return counted(n, "edge", "edges"); };
-  if (!out.open_edges.empty()) {
+  if (!out.open_edges.empty() && !options.sheet) {
     std::string text = "the mesh is not closed: ";
     if (r.boundary_edges > 0)
       text += counted(r.boundary_edges, "boundary edge", "boundary edges") + " in " +
@@ -113,10 +113,12 @@ void warn(PreparedMesh& out, const Duplicates& duplicates, const PrepareOptions&
               " where fans of faces touch";
     add(text);
   }
-  if (r.orientation == Orientation::non_orientable)
+  if (r.orientation == Orientation::non_orientable && !options.sheet)
     add("a part of the mesh is one-sided and has no inside (Moebius strip)");
   const char* const trusted = "; left as it is, as asked";
-  if (r.orientation == Orientation::mixed || r.winding_clashes > 0) {
+  if (options.sheet) {
+    // Whatever the orientation is, it does not matter.
+  } else if (r.orientation == Orientation::mixed || r.winding_clashes > 0) {
     std::string text = "faces are oriented inconsistently";
     if (r.winding_clashes > 0)
       text += fmt::format(", {} between two faces {}", edges(r.winding_clashes),

@@ -53,10 +53,14 @@ struct PreparedMesh {
 
 struct PrepareOptions {
   bool trust_orientation = false; // leave every triangle as it is
+  // The mesh is meant as a sheet without inside and outside: no warnings of holes and orientation, which do
+  // not matter then.
+  bool sheet = false;
 };
 
 // Throws Error(bad_input) for meshes without triangles, without extent, or without area; Error(limit)
-// for 1.4e9 triangles and more, and for sizes that are not from 1e-50 to 1e50. The result does not depend on the number of threads.
+// for 1.4e9 triangles and more, and for sizes that are not from 1e-50 to 1e50. The result does not depend on
+// the number of threads.
 PreparedMesh prepare_mesh(const TriangleMesh& mesh, const PrepareOptions& options = {});
 
 } // namespace levelray

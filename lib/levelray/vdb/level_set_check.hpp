@@ -1,6 +1,7 @@
 // What a user should know about a level set that somebody else made.
 #pragma once
 
+#include "levelray/convert/field_facts.hpp"
 #include "levelray/grid/block_grid.hpp"
 
 #include <string>
@@ -9,8 +10,10 @@
 namespace levelray {
 
 // One-line remarks, with numbers, on a band that is too narrow to interpolate in, values beyond the
-// background, and gradients that are far from length 1 near the surface (values that are no distances).
-// Tracing is exact for the interpolated values in any case; sphere-like shortcuts and offsets are not.
-std::vector<std::string> level_set_remarks(const BlockGrid& grid);
+// background, and values that are no distances, by the grid's facts. Tracing is exact for the interpolated
+// values in any case; sphere-like shortcuts and offsets are not. `then`: what was done about values that are
+// no distances, "they are traced as they are".
+std::vector<std::string> level_set_remarks(const BlockGrid& grid, const FieldFacts& facts,
+                                           const std::string& then);
 
 } // namespace levelray

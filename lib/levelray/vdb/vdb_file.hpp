@@ -1,9 +1,11 @@
 // OpenVDB files in and out. OpenVDB's headers stay inside this folder.
 #pragma once
 
+#include "levelray/convert/redistance.hpp"
 #include "levelray/grid/block_grid.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,12 +25,18 @@ void write_vdb(const std::string& path, const BlockGrid& grid, const VdbWriteOpt
 // say, to be asked before long work.
 void check_vdb_voxel_size(double voxel_size);
 
+// When to make distances of a grid's values (convert/redistance.hpp): never, where they are none
+// (FieldFacts::is_distance), or always.
+enum class Redistance { never, automatic, always };
+
 struct VdbReadOptions {
   std::string grid; // name, "name[i]" for the i-th of that name, or "[i]" for the i-th grid; empty: the only
                     // level set
   bool trust_input = false;                          // read in this process instead of a limited child
   std::uint64_t max_memory = std::uint64_t{8} << 30; // bytes, for the child and for the grid
   double timeout_seconds = 60;
+  Redistance redistance = Redistance::never;
+  double redistance_half_width_voxels = 3;
 };
 
 // One line about each grid of a file.
@@ -40,7 +48,9 @@ struct VdbGridInfo {
 
 struct VdbFile {
   BlockGrid grid;
-  std::vector<VdbGridInfo> grids; // of the whole file
+  FieldFacts facts;                            // of the grid as it was read
+  std::optional<RedistanceReport> redistanced; // when it was
+  std::vector<VdbGridInfo> grids;              // of the whole file
   std::vector<std::string> warnings;
 };
 
