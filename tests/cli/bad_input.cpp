@@ -128,7 +128,6 @@ TEST_CASE("level sets that cannot be used end with 3") {
     CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
     CHECK(run_program({"info", folder / name}).code == 3);
   }
-  // A level set is nothing to convert.
   CHECK(run_program({"convert", folder / "text.vdb", folder / "out.vdb"}).code == 3);
   CHECK(folder.names() == std::vector<std::string>{"empty.vdb", "text.vdb"});
 }
