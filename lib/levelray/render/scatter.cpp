@@ -11,35 +11,11 @@
 // or just touched: nothing enters it, and all light is reflected.
 #include "levelray/render/dielectric.hpp"
 #include "levelray/render/random.hpp"
-#include "levelray/render/shading.hpp"
-#include "levelray/trace/field_probe.hpp"
+#include "levelray/render/surface_place.hpp"
 
 namespace levelray {
 
 namespace {
-
-// What scattering needs to know of the object at a vertex.
-struct Place {
-  const SceneObject& object;
-  Vec3d at;     // the vertex in the object's space
-  Vec3d facing; // world space: unit gradient towards the path's side
-
-  Place(const SceneObject& of, const Vertex& vertex)
-      : object(of), at(of.in_place ? vertex.point : of.object_from_world.point(vertex.point)) {
-    const FieldProbe probe = probe_field(grid(), at);
-    facing = of.instance->world_from_object.rotate(probe.gradient).normalized();
-    if (vertex.inner) facing = -facing;
-  }
-  const BlockGrid& grid() const { return object.level_set->grid(); }
-
-  // A point in world space beside the vertex, in the direction of the unit normal n (world space).
-  std::optional<Vec3d> beside(const Vec3d& n, double side) const {
-    const Vec3d direction = object.in_place ? n : object.object_from_world.rotate(n);
-    const std::optional<Vec3d> p = point_on_side(grid(), at, direction, side);
-    if (!p || object.in_place) return p;
-    return object.instance->world_from_object.point(*p);
-  }
-};
 
 // The normal by which d (unit) is scattered: the vertex's, unless that contradicts the surface.
 Vec3d scattering_normal(const Vertex& vertex, const Vec3d& facing, const Vec3d& d, double eta) {
@@ -78,16 +54,12 @@ void scatter(const Shading& shading, const Vertex& vertex, std::vector<PathRay>&
     return;
   }
   const SceneObject& object = shading.objects.object(vertex.object);
-  const Place place(object, vertex);
+  const SurfacePlace place(object, vertex);
   const double eta = !glass ? 0 : vertex.inner ? material.ior : 1 / material.ior;
   const Vec3d n = scattering_normal(vertex, place.facing, d, eta);
 
-  // The safe point of the last ray, unless that is far: then there was none near the surface.
   const double side = vertex.inner ? -1 : 1;
-  Vec3d start = vertex.outside;
-  const double voxel = place.grid().transform.voxel_size * object.instance->world_from_object.scale;
-  if (!((start - vertex.point).length() <= 2 * voxel))
-    start = place.beside(place.facing, side).value_or(start);
+  const Vec3d start = place.start(vertex.outside, side);
   const int own = vertex.inner ? vertex.object : SceneRays::nothing; // the medium on the path's side
   if (!glass) {
     go_on(start, reflected(d, n), 1, own, false);

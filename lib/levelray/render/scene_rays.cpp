@@ -17,7 +17,8 @@ SceneRays::SceneRays(std::span<const Instance> instances) {
     const LevelSet*& level_set = ready[instance.grid];
     if (!level_set) level_set = level_sets_.emplace_back(std::make_unique<LevelSet>(*instance.grid)).get();
     objects_.push_back({&instance, level_set, instance.world_from_object.inverse(),
-                        instance.world_from_object.is_identity()});
+                        instance.world_from_object.is_identity(),
+                        0x1p13 * instance.grid->transform.voxel_size * instance.world_from_object.scale});
   }
 }
 

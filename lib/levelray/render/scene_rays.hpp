@@ -17,7 +17,9 @@ struct SceneObject {
   const Instance* instance;
   const LevelSet* level_set;
   Similarity object_from_world;
-  bool in_place; // the transform is the identity: rays need not be moved
+  bool in_place;         // the transform is the identity: rays need not be moved
+  double precise_within; // 2^13 voxels, in world units: a hit's safe point with larger coordinates may have
+                         // been rounded to the other side of the surface (intersect/exact.cpp)
 };
 
 // Rays are moved to each object's own space, where t is the same number, and ask there no farther than the

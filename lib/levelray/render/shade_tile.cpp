@@ -1,7 +1,7 @@
 // A tile's paths, in waves: all vertices of one depth are shaded together, then all rays that go on from them
 // are traced together.
 #include "levelray/render/random.hpp"
-#include "levelray/render/shading.hpp"
+#include "levelray/render/surface_place.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@ std::vector<Vertex> first_vertices(Shading& shading, const Tile& tile, const GBu
       Vertex& v = vertices.emplace_back();
       v.root = pixels.size();
       pixels.push_back(i);
-      v.branch = mix_hash(salt, i);
+      v.branch = salt + i; // hashed wherever it is used
       v.depth = 0;
       v.object = gbuffer.object[i];
       v.inner = status == PixelStatus::inner;
@@ -57,6 +57,7 @@ std::vector<Vertex> first_vertices(Shading& shading, const Tile& tile, const GBu
         if (v.material->kind == MaterialKind::glass) v.weight = transmittance(v.material->tint, gbuffer.t[i]);
       }
       v.back = (shading.eye - v.point).normalized();
+      if (!on_ground) check_safe_point(shading.objects.object(v.object), v);
       hits += on_ground ? 0 : 1;
     }
   shading.hits += hits;
@@ -103,12 +104,14 @@ std::vector<Vertex> next_vertices(Shading& shading, std::span<const PathRay> pat
     v.normal = ground ? shading.ground->up : Vec3d(normals[i]);
     if (v.inner) v.normal = -v.normal;
     v.back = -rays[i].direction;
+    if (!ground) check_safe_point(shading.objects.object(v.object), v);
   }
   return vertices;
 }
 
-void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int sample, float weight,
-                float* const rgba[4]) {
+// As shade_tile, for a part of a tile whose vertices fit into a cache.
+static void shade_part(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int sample, float weight,
+                       float* const rgba[4]) {
   const Sky& sky = shading.scene.sky;
   std::vector<std::size_t> pixels;
   std::vector<Vertex> vertices = first_vertices(shading, tile, gbuffer, sample, pixels);
@@ -153,6 +156,14 @@ void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int 
       for (int c = 0; c < 3; ++c) rgba[c][i] += static_cast<float>(sky.radiance[c]) * weight;
       rgba[3][i] += weight;
     }
+}
+
+void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int sample, float weight,
+                float* const rgba[4]) {
+  constexpr int rows = 8;
+  for (int y = tile.y_begin; y < tile.y_end; y += rows)
+    shade_part(shading, {tile.x_begin, y, tile.x_end, std::min(y + rows, tile.y_end)}, gbuffer, sample,
+               weight, rgba);
 }
 
 } // namespace levelray

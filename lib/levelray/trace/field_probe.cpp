@@ -36,12 +36,16 @@ FieldProbe probe_field(const BlockGrid& grid, const Vec3d& point) {
   return result;
 }
 
+bool lies_on_side(const BlockGrid& grid, const Vec3d& point, double side) {
+  const FieldProbe probe = probe_field(grid, point);
+  return side * probe.value > 0x1p-26 * probe.largest;
+}
+
 std::optional<Vec3d> point_on_side(const BlockGrid& grid, const Vec3d& at, const Vec3d& direction,
                                    double side) {
   for (const double step : {0x1p-20, 0x1p-16, 0x1p-12, 0x1p-8, 0x1p-4, 0x1p-2}) {
     const Vec3d p = at + direction * (step * grid.transform.voxel_size);
-    const FieldProbe probe = probe_field(grid, p);
-    if (side * probe.value > 0x1p-26 * probe.largest) return p;
+    if (lies_on_side(grid, p, side)) return p;
   }
   return std::nullopt;
 }
