@@ -47,8 +47,9 @@ struct GroundSettings {
   std::uint32_t id = 0;
 };
 
-// How much of the sky's and the ambient light the surroundings hide. `samples` rays per shaded point,
-// distributed as the cosine; each looks for objects and ground within `radius`.
+// How much of the sky's and the ambient light the surroundings hide. `samples` rays per point that is seen
+// directly, fewer in mirrors and through glass, distributed as the cosine; each looks for objects and ground
+// within `radius`.
 struct AmbientOcclusion {
   int samples = 0;                                         // 0: nothing is hidden; at most 65536
   double radius = std::numeric_limits<double>::infinity(); // world units, > 0
