@@ -61,8 +61,8 @@ void shade_tile(Shading& shading, const Tile& tile, const GBuffer& gbuffer, int 
 std::vector<Vec3d> local_radiance(Shading& shading, std::span<const Vertex> vertices);
 
 // The part of the hemisphere around each vertex's normal, weighted by the cosine, that is hidden by something
-// within ambient_occlusion.radius; estimated by ambient_occlusion.samples rays, and by fewer where less of the
-// vertex arrives at the eye.
+// within ambient_occlusion.radius; estimated by ambient_occlusion.samples rays, and by fewer where less of
+// the vertex arrives at the eye.
 std::vector<double> occlusion(Shading& shading, std::span<const Vertex> vertices);
 
 // Traces rays to their next vertices, in their order. Those that meet nothing have none, and add their part
