@@ -115,8 +115,8 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
   loaded.warnings.insert(loaded.warnings.end(), loaded.converted->warnings.begin(),
                          loaded.converted->warnings.end());
   loaded.read_ms = mesh.read_ms;
-  if (conversion.redistance != "auto")
-    loaded.warnings.push_back("--redistance is for .vdb files: no effect on a mesh");
+  if (conversion.redistance != "auto" || !conversion.iso.empty())
+    loaded.warnings.push_back("--redistance and --iso are for .vdb files: no effect on a mesh");
   for (const std::string& warning : loaded.warnings) print_warning(warning);
   if (const double thickness = loaded.converted->thickness; common.talks() && thickness > 0)
     print(fmt::format("sheet: {:.4g}{} thick ({:.3g} voxels), half of it on each side of the mesh\n",

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -132,11 +133,25 @@ void ConversionOptions::add_to(CLI::App& command) {
       ->type_name("R")
       ->group(group);
   command
+      .add_option("--iso", iso,
+                  "Take a fog volume of a .vdb for a solid: its surface is where the density has this value")
+      ->type_name("VALUE")
+      ->group(group);
+  command
       .add_flag(
           "--redistance{always}", redistance,
           "Make distances of a .vdb's values, to where they change sign; =auto (default): where they are "
           "none; =never: trace them as they are")
       ->group(group);
+}
+
+float ConversionOptions::iso_value() const {
+  double value = 0;
+  std::string_view rest;
+  if (!parse_number(iso, &value, &rest) || !rest.empty() || !(static_cast<float>(value) > 0) ||
+      !std::isfinite(static_cast<float>(value)))
+    throw Error(ErrorKind::usage, "--iso " + printable(iso, 80) + ": not a density; write a number > 0");
+  return static_cast<float>(value);
 }
 
 VdbReadOptions ConversionOptions::vdb_options(const InputOptions& input) const {
@@ -148,6 +163,7 @@ VdbReadOptions ConversionOptions::vdb_options(const InputOptions& input) const {
     throw Error(ErrorKind::usage,
                 "--band " + printable(band, 80) + ": give it in voxels for a .vdb, such as 3vx");
   options.redistance_half_width_voxels = width.value;
+  if (!iso.empty()) options.iso = iso_value();
   return options;
 }
 
@@ -158,20 +174,18 @@ void ConversionOptions::check() const {
   if (!thicken.empty()) parse_length("--thicken", thicken);
   find_name("--sign", sign, sign_method_names());
   find_name("--redistance", redistance, redistance_names);
+  if (!iso.empty()) iso_value();
 }
 
 Json ConversionOptions::json() const {
-  Json options{{"band", band}, {"sign", sign}};
+  Json options{{"band", band}, {"sign", sign}, {"redistance", redistance}};
   if (voxel.empty())
     options["resolution"] = resolution;
   else
     options["voxel"] = voxel;
   if (!thicken.empty()) options["thicken"] = thicken;
+  if (!iso.empty()) options["iso"] = iso_value();
   return options;
-}
-
-Json ConversionOptions::vdb_json() const {
-  return {{"redistance", redistance}, {"band", band}};
 }
 
 ConvertOptions ConversionOptions::resolve(const Box3d& bounds, const InputOptions& input) const {

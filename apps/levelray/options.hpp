@@ -42,7 +42,7 @@ struct InputOptions {
 
 // How a mesh, or a .vdb whose values are no distances, becomes a grid.
 struct ConversionOptions {
-  std::string voxel, band = "3vx", sign = "auto", thicken, redistance = "auto";
+  std::string voxel, band = "3vx", sign = "auto", thicken, redistance = "auto", iso;
   int resolution = 256;
 
   void add_to(CLI::App& command);
@@ -54,8 +54,8 @@ struct ConversionOptions {
   VdbReadOptions vdb_options(const InputOptions& input) const;
   // Checks what can be checked without the mesh: throws Error(usage).
   void check() const;
-  Json json() const;     // of a mesh, as given
-  Json vdb_json() const; // of a .vdb
+  Json json() const;       // as given: everything that the grid depends on besides the input
+  float iso_value() const; // of --iso, when it is given. Throws Error(usage)
   // In the units of a mesh with these bounds.
   ConvertOptions resolve(const Box3d& bounds, const InputOptions& input) const;
 };

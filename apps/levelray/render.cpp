@@ -100,7 +100,7 @@ void Render::run() const {
                       duration_text(total.ms() / 1000)));
   Json all_options = picture.json(options, thread_count());
   all_options.update(input.json());
-  all_options.update(loaded.converted ? conversion.json() : conversion.vdb_json());
+  all_options.update(conversion.json());
   Json json = {{"grid", grid_json(loaded.grid)},
                {"options", all_options},
                {"rays", {{"primary", stats.primary_rays}, {"shadow", stats.shadow_rays}}},

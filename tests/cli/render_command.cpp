@@ -47,7 +47,7 @@ TEST_CASE("render's JSON has the documented keys, and times of repetitions as me
                                                        "strict",      "grid",
                                                        "trust_input", "max_memory",
                                                        "resolution",  "band",
-                                                       "sign"});
+                                                       "sign",        "redistance"});
   CHECK(json["rays"]["primary"] == 64 * 48);
   CHECK(json["rays"]["shadow"] > 0);
   CHECK(json["hits"] > 64 * 48 / 10);

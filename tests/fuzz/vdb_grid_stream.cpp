@@ -70,7 +70,7 @@ TEST_CASE("20000 damaged answers of the reader process give a sound grid or an e
       REQUIRE(got.grid.bytes() <= max_bytes * 2);
       try {
         complete_blocks(got.grid, max_bytes * 4);
-        level_set_remarks(got.grid, field_facts(got.grid), "");
+        level_set_remarks(got.grid, field_facts(got.grid));
       } catch (const Error& error) {
         REQUIRE(error.kind() == ErrorKind::limit);
       }

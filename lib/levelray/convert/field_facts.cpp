@@ -29,9 +29,7 @@ struct Tally {
   }
   void add(const Tally& other) {
     for (std::size_t i = 0; i < bins; ++i) lengths[i] += other.lengths[i];
-    gradients += other.gradients, beyond += other.beyond;
-    crossings += other.crossings, steep_crossings += other.steep_crossings;
-    largest = std::max(largest, other.largest);
+    gradients += other.gradients, crossings += other.crossings, steep_crossings += other.steep_crossings;
   }
   // The middle of the bin in which the share of all lengths is reached.
   double percentile(double share) const {
@@ -43,13 +41,17 @@ struct Tally {
   }
 };
 
-void measure_block(const BlockGrid& grid, const Vec3i& corner, std::size_t block, Tally& tally) {
+// Values that say something: not the background's, which stand for whatever is beyond the band. Foreign grids
+// may have a background that is smaller than what is stored, so the limit is that of the values.
+void measure_block(const BlockGrid& grid, const Vec3i& corner, std::size_t block, float limit, Tally& tally) {
   const double h = grid.transform.voxel_size;
-  const auto in_band = [&](float v) { return std::fabs(v) < grid.background; };
+  const auto in_band = [&](float v) {
+    const float size = std::fabs(v);
+    return size < limit && size != grid.background;
+  };
   for (std::uint64_t rest = grid.active[block]; rest; rest &= rest - 1) {
     const int s = std::countr_zero(rest);
     const float v = grid.values[block * samples_per_block + static_cast<std::size_t>(s)];
-    if (std::fabs(v) > grid.background) ++tally.beyond, tally.largest = std::max(tally.largest, std::fabs(v));
     const Vec3i p = corner + Vec3i(bit_x(s), bit_y(s), bit_z(s));
     double square = 0;
     bool crossed = false, measurable = true;
@@ -75,8 +77,22 @@ void measure_block(const BlockGrid& grid, const Vec3i& corner, std::size_t block
 } // namespace
 
 FieldFacts field_facts(const BlockGrid& grid) {
-  Tally all; // of counts and a maximum, so that the order of adding does not matter
+  // Counts and maxima: the order of adding does not matter.
+  Tally all;
   std::mutex mutex;
+  parallel_for(grid.block_count(), 4096, [&](std::size_t begin, std::size_t end) {
+    std::uint64_t beyond = 0;
+    float largest = 0;
+    for (std::size_t b = begin; b < end; ++b)
+      for (std::uint64_t rest = grid.active[b]; rest; rest &= rest - 1) {
+        const float size =
+            std::fabs(grid.values[b * samples_per_block + static_cast<std::size_t>(std::countr_zero(rest))]);
+        if (size > grid.background) ++beyond, largest = std::max(largest, size);
+      }
+    const std::lock_guard lock(mutex);
+    all.beyond += beyond, all.largest = std::max(all.largest, largest);
+  });
+  const float limit = std::max(grid.background, all.largest);
   parallel_for(grid.nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
     Tally tally;
     for (std::size_t n = begin; n < end; ++n) {
@@ -85,7 +101,7 @@ FieldFacts field_facts(const BlockGrid& grid) {
       for (std::uint64_t rest = node.stored; rest; rest &= rest - 1, ++block) {
         const int bit = std::countr_zero(rest);
         measure_block(grid, node.coord * node_dim + Vec3i(bit_x(bit), bit_y(bit), bit_z(bit)) * block_dim,
-                      block, tally);
+                      block, limit, tally);
       }
     }
     const std::lock_guard lock(mutex);

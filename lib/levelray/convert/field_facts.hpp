@@ -8,15 +8,16 @@
 
 namespace levelray {
 
-// Of the samples within a voxel of the surface: active ones with a neighbour along an axis that is active,
-// too, and on the other side. Such a pair of samples is a crossing.
+// Of the samples within a voxel of the surface: active ones with a neighbour along an axis that is in the
+// band, too, and on the other side. Such a pair of samples is a crossing. In the band is what is not worth
+// +-background and is smaller than that, or than the largest value, should values go beyond the background.
 struct FieldFacts {
   std::uint64_t crossings = 0;
   // Share of the crossings whose values differ by more than 1.1 voxels: none in a distance, which changes by
   // no more than the way between two points.
   double steep_share = 0;
   // Lengths of the gradient by central differences, in voxels' worth of world units per voxel, so that a
-  // distance has 1: where the six neighbours of such a sample lie within the background.
+  // distance has 1: where the six neighbours of such a sample are in the band.
   std::uint64_t gradients = 0;
   double gradient_median = 0, gradient_low = 0, gradient_high = 0; // 50th, 5th and 95th percentile
   // Active samples beyond the background, and the largest of their values.

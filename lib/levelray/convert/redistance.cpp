@@ -19,6 +19,9 @@ namespace levelray {
 namespace {
 
 constexpr double wanted_error = 1.0 / 128; // voxels
+// A cell of 4^3 has up to 400 triangles, and a node lists those of all cells around it: finer ones would cost
+// more memory than the grid.
+constexpr int most_divisions = 4;
 
 bool is_inside(float value) {
   return value < 0;
@@ -42,9 +45,9 @@ int divisions_for(const std::array<float, 8>& f) {
     mixed += std::max(std::fabs(low), std::fabs(high));
   }
   const double squared = 3 * mixed / (8 * wanted_error * std::sqrt(gradient_square));
-  for (int n = 1; n < max_zero_set_divisions; ++n)
+  for (int n = 1; n < most_divisions; ++n)
     if (squared <= n * n) return n; // false for NaN: a cell without a gradient
-  return max_zero_set_divisions;
+  return most_divisions;
 }
 
 // Calls visit(lowest corner, corner values) for the cells with samples of both sides whose lowest corner lies

@@ -81,7 +81,7 @@ VdbGridInfo describe_grid(const ArchivedGrid& archived) {
   else if (!grid.isType<openvdb::FloatGrid>() && !grid.isType<openvdb::DoubleGrid>())
     info.note = fmt::format("holds {} values; a level set holds float or double", info.type);
   else if (grid_class == openvdb::GRID_FOG_VOLUME)
-    info.note = "is a fog volume (density), not a level set";
+    info.note = fog_volume_note;
   else if (grid_class == openvdb::GRID_STAGGERED)
     info.note = "is a staggered grid, not a level set";
   else

@@ -4,8 +4,7 @@
 
 namespace levelray {
 
-std::vector<std::string> level_set_remarks(const BlockGrid& grid, const FieldFacts& facts,
-                                           const std::string& then) {
+std::vector<std::string> level_set_remarks(const BlockGrid& grid, const FieldFacts& facts) {
   std::vector<std::string> remarks;
   // Interpolation reads the samples of cells that meet the surface, up to sqrt(3) voxels away; below 1.5
   // voxels (users of OpenVDB tools know this number) many of them are clamped.
@@ -17,7 +16,7 @@ std::vector<std::string> level_set_remarks(const BlockGrid& grid, const FieldFac
   if (facts.beyond)
     remarks.push_back(fmt::format("{} samples of the band lie beyond the background {:.6g}, up to {:.6g}",
                                   facts.beyond, grid.background, facts.largest_beyond));
-  if (!facts.is_distance()) remarks.push_back(describe_field(facts) + "; " + then);
+  if (!facts.is_distance()) remarks.push_back(describe_field(facts) + "; they are traced as they are");
   return remarks;
 }
 

@@ -11,9 +11,7 @@ namespace levelray {
 
 // One-line remarks, with numbers, on a band that is too narrow to interpolate in, values beyond the
 // background, and values that are no distances, by the grid's facts. Tracing is exact for the interpolated
-// values in any case; sphere-like shortcuts and offsets are not. `then`: what was done about values that are
-// no distances, "they are traced as they are".
-std::vector<std::string> level_set_remarks(const BlockGrid& grid, const FieldFacts& facts,
-                                           const std::string& then);
+// values in any case; sphere-like shortcuts and offsets are not.
+std::vector<std::string> level_set_remarks(const BlockGrid& grid, const FieldFacts& facts);
 
 } // namespace levelray

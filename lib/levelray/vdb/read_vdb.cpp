@@ -46,9 +46,13 @@ VdbFile read_vdb(const std::string& path, const VdbReadOptions& options) {
   file.facts = field_facts(file.grid);
   const bool wanted = options.redistance == Redistance::always ||
                       (options.redistance == Redistance::automatic && !file.facts.is_distance());
-  std::string then = "they are traced as they are";
-  if (wanted) then = redistance_file(file, path, options);
-  for (std::string& remark : level_set_remarks(file.grid, file.facts, then))
+  // Of a grid that was redistanced, band and background are new: only why it was is of interest.
+  if (wanted) {
+    const std::string done = redistance_file(file, path, options);
+    if (!file.facts.is_distance()) file.warnings.push_back(describe_field(file.facts) + "; " + done);
+    return file;
+  }
+  for (std::string& remark : level_set_remarks(file.grid, file.facts))
     file.warnings.push_back(std::move(remark));
   return file;
 }

@@ -35,6 +35,9 @@ struct VdbReadOptions {
   bool trust_input = false;                          // read in this process instead of a limited child
   std::uint64_t max_memory = std::uint64_t{8} << 30; // bytes, for the child and for the grid
   double timeout_seconds = 60;
+  // Take a fog volume for a solid whose surface is where the density has this value, > 0: what is read is
+  // iso - density. Only fog volumes and grids without a class are looked for then.
+  std::optional<float> iso;
   Redistance redistance = Redistance::never;
   double redistance_half_width_voxels = 3;
 };
@@ -54,8 +57,8 @@ struct VdbFile {
   std::vector<std::string> warnings;
 };
 
-// Reads a level set: float, double or half, uniform scale. Throws Error(bad_input) with the reason and the
-// candidates, Error(limit) over memory or time.
+// Reads a level set (or with `iso` a fog volume): float, double or half, uniform scale. Throws
+// Error(bad_input) with the reason and the candidates, Error(limit) over memory or time.
 VdbFile read_vdb(const std::string& path, const VdbReadOptions& options = {});
 std::vector<VdbGridInfo> list_vdb(const std::string& path, const VdbReadOptions& options = {});
 

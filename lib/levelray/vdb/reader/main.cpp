@@ -1,7 +1,9 @@
 // levelray-vdb-reader: reads one OpenVDB file under limits and writes the grid to standard output for its
 // parent.
 //
-//   levelray-vdb-reader read|list FILE GRID MAX_MEMORY TIMEOUT_SECONDS
+//   levelray-vdb-reader read|list FILE GRID MAX_MEMORY TIMEOUT_SECONDS ISO
+//
+// ISO is a hexadecimal float, or empty.
 //
 // Not for people: see levelray/vdb/README.md.
 
@@ -16,7 +18,7 @@
 using namespace levelray;
 
 int main(int argc, char** argv) {
-  if (argc != 6) {
+  if (argc != 7) {
     std::fputs("levelray-vdb-reader serves levelray; it is not meant to be called by hand\n", stderr);
     return 2;
   }
@@ -25,6 +27,7 @@ int main(int argc, char** argv) {
   VdbReadOptions options;
   options.grid = argv[3];
   options.max_memory = std::strtoull(argv[4], nullptr, 10);
+  if (*argv[6]) options.iso = std::strtof(argv[6], nullptr);
   serve_limited(path, options.max_memory, std::strtod(argv[5], nullptr), [&](const ByteSink& sink) {
     VdbFile file;
     if (list_only)
