@@ -114,8 +114,8 @@ TEST_CASE("what is no OpenVDB file is named so before OpenVDB sees it") {
 TEST_CASE("grids that are no level sets are turned down with the reason and the candidates") {
   Answer answer = Maker().add(ball(), "density", openvdb::GRID_FOG_VOLUME).read_back();
   CHECK(answer.kind == ErrorKind::bad_input);
-  CHECK(answer.text ==
-        ": grid \"density\" is a fog volume (density), not a level set; has: density [fog volume]");
+  CHECK(answer.text == ": grid \"density\" is a fog volume (density), not a level set; --iso 0.5 makes a "
+                       "solid of it; has: density [fog volume]");
 
   answer = Maker().add(openvdb::Vec3SGrid::create(), "v", openvdb::GRID_UNKNOWN).read_back();
   CHECK(answer.text == ": grid \"v\" holds vec3s values; a level set holds float or double; has: v [vec3s]");
@@ -124,9 +124,9 @@ TEST_CASE("grids that are no level sets are turned down with the reason and the 
                .add(ball(), "density", openvdb::GRID_FOG_VOLUME)
                .add(openvdb::Vec3SGrid::create(), "v", openvdb::GRID_UNKNOWN)
                .read_back();
-  CHECK(answer.text ==
-        ": no level set: grid \"density\" is a fog volume (density), not a level set; has: density [fog "
-        "volume], v [vec3s]");
+  CHECK(answer.text == ": no level set: grid \"density\" is a fog volume (density), not a level set; --iso "
+                       "0.5 makes a solid of it; has: density [fog "
+                       "volume], v [vec3s]");
   answer = Maker().add(ball(), "a", openvdb::GRID_STAGGERED).read_back();
   CHECK(contains(answer.text, "is a staggered grid"));
   answer = Maker().read_back();
@@ -159,9 +159,9 @@ TEST_CASE("grids are chosen by name, by name and index, by index, or because the
       .add(ball(3), "odd", openvdb::GRID_UNKNOWN);
   CHECK(one.read_back().file.grid.transform.voxel_size == 2);
   CHECK(one.read_back().file.grid.name == "s");
-  CHECK(one.read_back("fog").text ==
-        ": grid \"fog\" is a fog volume (density), not a level set; has: fog [fog volume], s "
-        "[level set], odd [float]");
+  CHECK(one.read_back("fog").text == ": grid \"fog\" is a fog volume (density), not a level set; --iso 0.5 "
+                                     "makes a solid of it; has: fog [fog volume], s "
+                                     "[level set], odd [float]");
 }
 
 TEST_CASE("a grid without a class is taken for a level set, with a warning, if it has both signs") {

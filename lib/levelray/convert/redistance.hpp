@@ -28,12 +28,12 @@ struct RedistanceReport {
 // The grid, on the same lattice, whose every sample within the half-width of the surface holds its distance
 // to it. The surface is the zero set of the source's trilinear interpolant, between the cells' corners where
 // the field changes its sign; it is found to within 1/128 voxel, or 3/128 times its curvature in voxels where
-// that is more (zero_set.hpp), and distances to what was found are exact to rounding. Signs are the source's, sample by sample: the topology of its
-// samples stays, and the new surface crosses the same edges of the lattice. It is not quite the old one:
-// interpolation between exact distances errs by up to an eighth of the surface's curvature, in voxels, which
-// the report measures. (Keeping the samples next to the surface would keep it, but not make them distances;
-// normals from differences of such samples are as uneven as the source's.) Where the field touches zero
-// without changing its sign there is no surface.
+// that is more (zero_set.hpp), and distances to what was found are exact to rounding. Signs are the source's,
+// sample by sample: the topology of its samples stays, and the new surface crosses the same edges of the
+// lattice. It is not quite the old one: interpolation between exact distances errs by up to an eighth of the
+// surface's curvature, in voxels, which the report measures. (Keeping the samples next to the surface would
+// keep it, but not make them distances; normals from differences of such samples are as uneven as the
+// source's.) Where the field touches zero without changing its sign there is no surface.
 //
 // The source needs its cell masks (complete_blocks). The result does not depend on the number of threads.
 // Throws Error(limit) where it would exceed max_memory, Error(bad_input) where no two samples differ in sign.

@@ -8,7 +8,7 @@ namespace levelray {
 
 // The note on fog volumes.
 inline constexpr const char* fog_volume_note =
-    "is a fog volume (density), not a level set; --iso 0.5 takes the surface where it has that value";
+    "is a fog volume (density), not a level set; --iso 0.5 makes a solid of it";
 
 // The line about a grid; texts from the file are cleaned and clamped. `note` is empty for scalar level sets
 // with uniform voxels, and for scalar grids without a class, which may be level sets.
