@@ -18,7 +18,8 @@ namespace {
 constexpr const char* channel_comments =
     "R, G, B premultiplied by A, scene-linear. Z: depth along the view axis; t: distance along the ray; P, "
     "N: world "
-    "position and unit outward normal; steps, tests: work done for the ray. AOVs are of the pixel's centre, "
+    "position and unit outward normal; steps, tests, interpolations, samples: work done for the ray; "
+    "shadow_steps, shadow_tests: for the rays towards lights, per sample. AOVs are of the pixel's centre, "
     "unfiltered. Where A is 0: Z = t = 1e30, P = N = 0.";
 
 struct Render {
@@ -36,6 +37,13 @@ Json times_json(std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
   const std::size_t n = ms.size();
   return {{"median", (ms[(n - 1) / 2] + ms[n / 2]) / 2}, {"min", ms.front()}, {"max", ms.back()}};
+}
+
+Json counts_json(const CountSums& sums) {
+  return {{"steps", sums.steps},
+          {"tests", sums.tests},
+          {"interpolations", sums.interpolations},
+          {"samples", sums.samples}};
 }
 
 double median(std::vector<double> ms) {
@@ -105,6 +113,7 @@ void Render::run() const {
                {"options", all_options},
                {"rays", {{"primary", stats.primary_rays}, {"shadow", stats.shadow_rays}}},
                {"hits", stats.hits},
+               {"counts", {{"primary", counts_json(stats.primary)}, {"shadow", counts_json(stats.shadow)}}},
                {"ms",
                 {{"load", load_ms},
                  {"prepare", times_json(stats.prepare_ms)},

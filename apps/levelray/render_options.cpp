@@ -111,6 +111,7 @@ void PictureOptions::add_look_to(CLI::App& command) {
       ->capture_default_str()
       ->type_name("NAME")
       ->group(image);
+  acceleration.add_to(command, "Speed (the picture stays the same)");
   command.add_option("--repeat", repeat, "Render K times and report median, min and max of the times")
       ->check(CLI::Range(1, 100000))
       ->type_name("K")
@@ -144,6 +145,7 @@ RenderOptions PictureOptions::resolve_without_grid() const {
   find_name("--normals", normals, method_names<NormalSchemes>());
   options.normals = normals;
   options.repeat = repeat;
+  options.acceleration = acceleration.resolve();
   check_render_options(options);
   return options;
 }
@@ -172,22 +174,24 @@ Json PictureOptions::json(const RenderOptions& resolved, int threads) const {
   Json lights_json = Json::array();
   for (const DirectionalLight& light : resolved.lights)
     lights_json.push_back({{"direction", vector_json(light.to_light)}, {"intensity", light.intensity}});
-  return {{"size", {camera.width, camera.height}},
-          {"eye", vector_json(camera.eye)},
-          {"target", vector_json(camera.target)},
-          {"up", vector_json(camera.up)},
-          {"fov", camera.fov_degrees},
-          {"intersector", resolved.intersector},
-          {"normals", resolved.normals},
-          {"lights", lights_json},
-          {"shading", resolved.shading},
-          {"shadows", resolved.shadows},
-          {"ground", resolved.ground},
-          {"samples", resolved.samples},
-          {"aov", resolved.aovs},
-          {"repeat", resolved.repeat},
-          {"threads", threads},
-          {"output", outputs}};
+  Json json = {{"size", {camera.width, camera.height}},
+               {"eye", vector_json(camera.eye)},
+               {"target", vector_json(camera.target)},
+               {"up", vector_json(camera.up)},
+               {"fov", camera.fov_degrees},
+               {"intersector", resolved.intersector},
+               {"normals", resolved.normals},
+               {"lights", lights_json},
+               {"shading", resolved.shading},
+               {"shadows", resolved.shadows},
+               {"ground", resolved.ground},
+               {"samples", resolved.samples},
+               {"aov", resolved.aovs},
+               {"repeat", resolved.repeat},
+               {"threads", threads},
+               {"output", outputs}};
+  json.update(acceleration.json());
+  return json;
 }
 
 } // namespace levelray

@@ -1,6 +1,7 @@
 // The options of `levelray render` that make the picture.
 #pragma once
 
+#include "acceleration_options.hpp"
 #include "input.hpp"
 #include "levelray/render/render_image.hpp"
 
@@ -13,6 +14,7 @@ struct PictureOptions {
   double fov = 45;
   bool shadows = false, ground = false;
   int samples = 1, repeat = 1;
+  AccelerationOptions acceleration;
 
   void add_to(CLI::App& command);
   // All but the outputs.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace levelray {
@@ -36,5 +37,32 @@ inline constexpr auto layer_masks = [] {
         }
   return masks;
 }();
+
+// Bit d set: some bit of the mask has that digit along the axis.
+inline unsigned used_layers(std::uint64_t mask, int axis) {
+  unsigned result = 0;
+  if (axis == 2) {
+    for (int d = 0; d < 4; ++d) result |= unsigned{(mask >> 16 * d & 0xFFFF) != 0} << d;
+    return result;
+  }
+  const std::uint64_t pairs = mask | mask >> 32;
+  const auto xy = static_cast<unsigned>((pairs | pairs >> 16) & 0xFFFF);
+  if (axis == 0) return (xy | xy >> 4 | xy >> 8 | xy >> 12) & 0xF;
+  for (int d = 0; d < 4; ++d) result |= unsigned{(xy >> 4 * d & 0xF) != 0} << d;
+  return result;
+}
+
+// The box of the children that have bits, of which there is one at least: low .. high - 1 per axis.
+struct ChildExtent {
+  int low[3], high[3];
+
+  explicit ChildExtent(std::uint64_t mask) {
+    for (int a = 0; a < 3; ++a) {
+      const unsigned used = used_layers(mask, a);
+      low[a] = std::countr_zero(used);
+      high[a] = std::bit_width(used);
+    }
+  }
+};
 
 } // namespace levelray

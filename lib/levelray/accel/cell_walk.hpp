@@ -21,43 +21,14 @@
 
 #include "levelray/accel/box_masks.hpp"
 #include "levelray/accel/node_walk.hpp"
-#include "levelray/accel/ray_frame.hpp"
+#include "levelray/accel/visited_cell.hpp"
 #include "levelray/core/bits.hpp"
-#include "levelray/grid/cell_segment.hpp"
 
 #include <bit>
 
 namespace levelray {
 
-struct WalkCounts {
-  std::uint32_t nodes = 0, blocks = 0, cells = 0;
-};
-
-struct VisitedCell {
-  CellSegment segment;
-  double in, out;  // s
-  int position[3]; // in cells of the frame
-};
-
 namespace walk {
-
-// s of the five planes that bound and divide a 4x4x4 box, per axis.
-struct PlaneTimes {
-  double s[3][6]; // the sixth only evens out the loop
-
-  [[gnu::always_inline]] PlaneTimes(const RayFrame& ray, const int (&corner)[3], int child_size) {
-    for (int a = 0; a < 3; ++a) {
-      const double first = corner[a], size = child_size;
-      for (int k = 0; k < 6; ++k) s[a][k] = (first + k * size - ray.origin[a]) * ray.inverse[a];
-    }
-  }
-  double in(int x, int y, int z, double start) const {
-    return std::max(std::max(s[0][x], s[1][y]), std::max(s[2][z], start));
-  }
-  double out(int x, int y, int z, double end) const {
-    return std::min(std::min(s[0][x + 1], s[1][y + 1]), std::min(s[2][z + 1], end));
-  }
-};
 
 // A superset of the children of the box at `corner` that the ray meets in [in, out], an interval in which it
 // is in the box: those between the children of the ends. The margin of 2^-20 children covers the rounding of
@@ -77,37 +48,16 @@ struct PlaneTimes {
   return mask;
 }
 
-// The ends of the ray's segment in a cell.
-[[gnu::always_inline]] inline void set_ends(const RayFrame& ray, const PlaneTimes& times,
-                                            const int (&digit)[3], VisitedCell& cell) {
-  for (int a = 0; a < 3; ++a) {
-    const double low = cell.position[a], high = low + 1;
-    // cell.in is the largest of the lower planes' times and 0, cell.out likewise.
-    const double in = times.s[a][digit[a]] == cell.in ? low : ray.origin[a] + cell.in * ray.direction[a];
-    const double out =
-        times.s[a][digit[a] + 1] == cell.out ? high : ray.origin[a] + cell.out * ray.direction[a];
-    cell.segment.in.x[a] = std::min(std::max(in - low, 0.0), 1.0);
-    cell.segment.in.rest[a] = std::min(std::max(high - in, 0.0), 1.0);
-    cell.segment.out.x[a] = std::min(std::max(out - low, 0.0), 1.0);
-    cell.segment.out.rest[a] = std::min(std::max(high - out, 0.0), 1.0);
-  }
-}
-
 } // namespace walk
 
 // Calls visit(cell) for every surface cell that the ray meets, front to back, until it returns true. Returns
-// whether it did. Begins where skip_empty_nodes, if it was called, has moved the ray to.
+// whether it did. Begins and ends where skip_empty_nodes and narrow_frame, if they were called, have moved
+// the ray's beginning and end to.
 template <class Visit>
 bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& counts, Visit&& visit) {
   const walk::NodeTable table(surface, ray.octant);
-  int record_stride[3] = {1, SurfaceBlocks::record_stride_y, SurfaceBlocks::record_stride_z};
-  int record_origin = 0;
-  for (int a = 0; a < 3; ++a)
-    if (ray.octant >> a & 1) {
-      record_origin += record_stride[a] * block_dim;
-      record_stride[a] = -record_stride[a];
-    }
-  const int mirrored_bits = (ray.octant & 1 ? 3 : 0) | (ray.octant & 2 ? 12 : 0) | (ray.octant & 4 ? 48 : 0);
+  const walk::CellReader reader(ray.octant);
+  const int mirrored_bits = walk::mirrored_bits(ray.octant);
 
   VisitedCell cell;
   const auto visit_block = [&](std::size_t block, const int(&corner)[3], double in, double out) {
@@ -125,14 +75,7 @@ bool walk_cells(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& c
       cell.out = times.out(digit[0], digit[1], digit[2], ray.end);
       if (!(cell.in <= cell.out)) continue;
       ++counts.cells;
-      for (int a = 0; a < 3; ++a) cell.position[a] = corner[a] + digit[a];
-      walk::set_ends(ray, times, digit, cell);
-      const float* const base = record + record_origin + digit[0] * record_stride[0] +
-                                digit[1] * record_stride[1] + digit[2] * record_stride[2];
-      for (int c = 0; c < 8; ++c)
-        cell.segment.corner[c] = base[(c & 1 ? record_stride[0] : 0) + (c & 2 ? record_stride[1] : 0) +
-                                      (c & 4 ? record_stride[2] : 0)];
-      cell.segment.error = record[SurfaceBlocks::record_error];
+      reader.read(ray, times, corner, digit, record, cell);
       if (visit(static_cast<const VisitedCell&>(cell))) return true;
     }
     return false;

@@ -67,7 +67,7 @@ bool enter_box(const SurfaceBlocks& surface, const GridTransform& transform, con
   const double start = frame.from_outside ? enter : first;
   const double stop = std::min(leave, last);
   if (!(start <= stop)) return false;
-  frame.end = stop - start;
+  frame.last = frame.end = stop - start;
   frame.t_at_start = frame.from_outside ? start * scale : ray.t_min;
 
   // Begin there.

@@ -24,6 +24,7 @@ struct RayFrame {
   int start_node[3];     // where the walk begins, in the frame's nodes: that which holds the origin, or one
                          // behind empty ones
   double start;          // s there
+  double last;           // <= end: beyond it the ray meets no surface cell
   std::uint32_t skipped; // steps taken from the origin to there
   bool from_outside; // s = 0 lies on the box's hull, where every sample is positive: the ray came in there
 

@@ -1,5 +1,6 @@
 #include "levelray/accel/surface_blocks.hpp"
 
+#include "levelray/accel/box_masks.hpp"
 #include "levelray/core/parallel.hpp"
 
 #include <algorithm>
@@ -68,6 +69,17 @@ void SurfaceBlocks::index_nodes(const BlockGrid& grid) {
     entry = static_cast<std::uint32_t>(nodes_.size() - 1);
   }
   cells_.resize(blocks);
+
+  // The box of their blocks.
+  block_min_ = node_dims_ * 4;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const ChildExtent extent(nodes_[n].blocks);
+    const Vec3i at = grid.nodes[sources_[n]].coord - node_min_;
+    for (int a = 0; a < 3; ++a) {
+      block_min_[a] = std::min(block_min_[a], 4 * at[a] + extent.low[a]);
+      block_end_[a] = std::max(block_end_[a], 4 * at[a] + extent.high[a]);
+    }
+  }
 }
 
 void SurfaceBlocks::copy_samples(const BlockGrid& grid, std::size_t n, const BlockGrid::Node& source) {

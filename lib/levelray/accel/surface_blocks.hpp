@@ -38,6 +38,9 @@ class SurfaceBlocks {
   // The table covers the bounding box of the nodes that have surface blocks, x fastest.
   const Vec3i& node_min() const { return node_min_; }
   const Vec3i& node_dims() const { return node_dims_; }
+  // The bounding box of the surface blocks, in blocks from the table's lowest corner; `end` is excluded.
+  const Vec3i& block_min() const { return block_min_; }
+  const Vec3i& block_end() const { return block_end_; }
 
   // By position in the table. `leap` is 0 exactly where there is a node; octant bit a is set for rays towards
   // lower coordinates of axis a.
@@ -70,7 +73,7 @@ class SurfaceBlocks {
   void copy_samples(const BlockGrid& grid, std::size_t node, const BlockGrid::Node& source);
   void compute_leaps(int octant);
 
-  Vec3i node_min_{0, 0, 0}, node_dims_{0, 0, 0};
+  Vec3i node_min_{0, 0, 0}, node_dims_{0, 0, 0}, block_min_{0, 0, 0}, block_end_{0, 0, 0};
   std::vector<std::uint32_t> table_; // node index; meaningless where leap > 0
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> sources_; // per node its index in the grid; only while building

@@ -25,6 +25,9 @@ struct Bernstein {
   T start, sum1, sum2, end;
 };
 
+// The values F of the blossom.
+inline constexpr int bernstein_interpolations = 8;
+
 // Written in lanes of four, one for each choice of ends in x and y, which compilers turn into vectors; the
 // operations on each value are those of `interpolate`.
 template <class T>

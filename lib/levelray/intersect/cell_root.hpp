@@ -2,16 +2,22 @@
 //
 // An intersector is a struct with
 //   static constexpr std::string_view name, source;
-//   static bool exists(const CellSegment&, double side);
-//   static bool find(const CellSegment&, double side, CellRoot&);
+//   template <class Count = NoCount> static bool exists(const CellSegment&, double side, Count&& = {});
+//   template <class Count = NoCount> static bool find(const CellSegment&, double side, CellRoot&, Count&& =
+//   {});
 // `side` is +1 where the ray began outside (positive values), -1 where it began inside. `find` looks for the
 // first point of the segment, ends included, where side * f <= 0, and returns false where it sees none;
-// `exists` answers the same without the place. Neither ever fails in another way.
+// `exists` answers the same without the place. Neither ever fails in another way. Both tell count(n) how many
+// values of the interpolant, or of its blossom (bernstein.hpp), they compute.
 #pragma once
 
 #include "levelray/grid/cell_segment.hpp"
 
 namespace levelray {
+
+struct NoCount {
+  void operator()(int) const {}
+};
 
 struct CellRoot {
   static constexpr double nowhere = -1;

@@ -26,13 +26,19 @@ struct Exact {
   static constexpr std::string_view source =
       "first root of the trilinear cubic; Parker et al. 1998, Marmitt et al. 2004";
 
-  static bool exists(const CellSegment& segment, double side) {
+  template <class Count = NoCount>
+  static bool exists(const CellSegment& segment, double side, Count&& count = {}) {
+    count(bernstein_interpolations);
     if (surely_positive(segment, side)) return false;
+    count(bernstein_interpolations);
     return last_of_bracket(oriented(segment, side)) >= 0;
   }
 
-  static bool find(const CellSegment& segment, double side, CellRoot& root) {
+  template <class Count = NoCount>
+  static bool find(const CellSegment& segment, double side, CellRoot& root, Count&& count = {}) {
+    count(bernstein_interpolations);
     if (surely_positive(segment, side)) return false;
+    count(bernstein_interpolations);
     const Bernstein<double> f = oriented(segment, side);
     const double last = last_of_bracket(f);
     if (!(last >= 0)) return false;

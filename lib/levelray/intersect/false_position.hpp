@@ -22,12 +22,17 @@ struct FalsePosition {
   static constexpr std::string_view name{text, sizeof text};
   static constexpr std::string_view source = "Jamriska 2010, section 4.2";
 
-  static bool exists(const CellSegment& segment, double side) {
-    return !(side * interpolate(segment.corner, segment.in) > 0) ||
-           !(side * interpolate(segment.corner, segment.out) > 0);
+  template <class Count = NoCount>
+  static bool exists(const CellSegment& segment, double side, Count&& count = {}) {
+    count(1);
+    if (!(side * interpolate(segment.corner, segment.in) > 0)) return true;
+    count(1);
+    return !(side * interpolate(segment.corner, segment.out) > 0);
   }
 
-  static bool find(const CellSegment& segment, double side, CellRoot& root) {
+  template <class Count = NoCount>
+  static bool find(const CellSegment& segment, double side, CellRoot& root, Count&& count = {}) {
+    count(2);
     double f_low = side * interpolate(segment.corner, segment.in);
     double f_high = side * interpolate(segment.corner, segment.out);
     root.outside = CellRoot::nowhere;
@@ -49,6 +54,7 @@ struct FalsePosition {
     for (int step = 1;; ++step) {
       root.at = low + (high - low) * (f_low / (f_low - f_high));
       if (step == Steps) break;
+      count(1);
       const double value = side * interpolate(segment.corner, point_at(segment, root.at));
       if (value > 0) {
         low = root.at, f_low = value;

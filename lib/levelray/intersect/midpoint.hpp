@@ -12,8 +12,13 @@ struct Midpoint {
   static constexpr std::string_view name = "midpoint";
   static constexpr std::string_view source = "Jamriska 2010, section 4.2";
 
-  static bool exists(const CellSegment&, double) { return true; }
-  static bool find(const CellSegment& segment, double side, CellRoot& root) {
+  template <class Count = NoCount>
+  static bool exists(const CellSegment&, double, Count&& = {}) {
+    return true;
+  }
+  template <class Count = NoCount>
+  static bool find(const CellSegment& segment, double side, CellRoot& root, Count&& count = {}) {
+    count(1);
     root.at = 0.5;
     root.outside = side * interpolate(segment.corner, segment.in) > 0 ? 0 : CellRoot::nowhere;
     return true;

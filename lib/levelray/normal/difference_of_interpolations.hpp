@@ -19,6 +19,7 @@ namespace levelray {
 struct DifferenceOfInterpolations {
   static constexpr std::string_view name = "difference-of-interpolations";
   static constexpr std::string_view source = "Jamriska 2010, section 5";
+  static constexpr int samples = 32, interpolations = 6;
   static constexpr double offset_voxels = 0.5;
 
   static Vec3d gradient(const Neighbourhood& f, const CellPosition& at);

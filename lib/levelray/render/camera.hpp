@@ -28,7 +28,8 @@ class Camera {
   const CameraSettings& settings() const { return settings_; }
   Vec3d right() const { return right_; }
   Vec3d up() const { return up_; }
-  Vec3d forward() const { return forward_; } // unit, along the view axis
+  Vec3d forward() const { return forward_; }          // unit, along the view axis
+  double half_height() const { return half_height_; } // of the image at unit distance: tan(fov/2)
 
   // The matrices of the OpenEXR convention (StandardAttributes): row vectors; camera space left-handed, x
   // right, y up, z along the view; NDC from (0,0) top left to (1,1) bottom right of the image, after division

@@ -55,7 +55,17 @@ void add_light(Shading& shading, const Light& light, std::span<const Vertex> ver
     ray.t_max = in.t_max;
   }
   const std::unique_ptr<bool[]> hidden(new bool[lit.size()]());
-  if (!rays.empty()) shading.objects.any(rays, shading.intersector, std::span(hidden.get(), rays.size()));
+  if (!rays.empty()) {
+    // Either all of the light's rays are traced or none, so ray i is that of vertex lit[i].
+    std::vector<RayCounts> counts(rays.size());
+    shading.objects.any(rays, shading.intersector, std::span(hidden.get(), rays.size()), counts);
+    CountSums sums;
+    for (const RayCounts& own : counts) sums += own;
+    shading.shadow_counts += sums;
+    if (!shading.shadow_counts_of.empty())
+      for (std::size_t i = 0; i < counts.size(); ++i)
+        shading.shadow_counts_of[vertices[lit[i]].pixel] += counts[i];
+  }
   shading.shadow_rays += rays.size();
   for (std::size_t i = 0; i < lit.size(); ++i)
     if (!hidden[i]) radiance[lit[i]] += gain[i];

@@ -5,6 +5,7 @@
 #include "levelray/render/shading.hpp"
 #include "levelray/render/visibility.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -32,12 +33,17 @@ int samples_per_side(int samples) {
 
 void check_render_options(const RenderOptions& options) {
   samples_per_side(options.samples);
+  if (options.acceleration.minmax < 0 || options.acceleration.minmax > 4096)
+    throw Error(ErrorKind::usage, "--minmax must be within 1 and 4096");
   if (options.repeat < 1) throw Error(ErrorKind::usage, "--repeat must be at least 1");
   for (const std::string& aov : options.aovs) {
     bool known = false;
     for (const std::string& name : aov_names()) known = known || name == aov;
     if (!known)
-      throw Error(ErrorKind::usage, "unknown AOV \"" + aov + "\"; choose from Z, t, P, N, id, steps, tests");
+      throw Error(ErrorKind::usage,
+                  "unknown AOV \"" + aov +
+                      "\"; choose from Z, t, P, N, id, steps, tests, interpolations, samples, shadow_steps, "
+                      "shadow_tests");
   }
   for (const DirectionalLight& light : options.lights)
     if (!(std::abs(light.to_light.length() - 1) < 1e-9) || !(light.intensity >= 0))
@@ -49,7 +55,7 @@ namespace {
 
 // Copies the values of an AOV out of the G-buffer.
 void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& camera, const Scene& scene,
-              Image& image) {
+              std::span<const RayCounts> shadow_counts, int samples, Image& image) {
   const auto fill = [&](const std::string& channel, float miss, auto&& value) {
     std::vector<float>& values = image.add(channel);
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -71,18 +77,25 @@ void fill_aov(const std::string& name, const GBuffer& gbuffer, const Camera& cam
                                           : scene.instances[static_cast<std::size_t>(object)].id;
     });
   // Counters are of the ray, whether it hit or not.
-  const auto count = [&](auto member) {
+  const auto count = [&](std::span<const RayCounts> counts, auto member, float scale) {
     std::vector<float>& values = image.add(name);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(gbuffer.counts[i].*member);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(counts[i].*member) * scale;
   };
-  if (name == "steps") count(&RayCounts::steps);
-  if (name == "tests") count(&RayCounts::tests);
+  if (name == "steps") count(gbuffer.counts, &RayCounts::steps, 1);
+  if (name == "tests") count(gbuffer.counts, &RayCounts::tests, 1);
+  if (name == "interpolations") count(gbuffer.counts, &RayCounts::interpolations, 1);
+  if (name == "samples") count(gbuffer.counts, &RayCounts::samples, 1);
+  const float per_sample = 1.0f / static_cast<float>(samples);
+  if (name == "shadow_steps") count(shadow_counts, &RayCounts::steps, per_sample);
+  if (name == "shadow_tests") count(shadow_counts, &RayCounts::tests, per_sample);
 }
 
 } // namespace
 
 const std::vector<std::string>& aov_names() {
-  static const std::vector<std::string> names{"Z", "t", "P", "N", "id", "steps", "tests"};
+  static const std::vector<std::string> names{
+      "Z",           "t", "P", "N", "id", "steps", "tests", "interpolations", "samples", "shadow_steps",
+      "shadow_tests"};
   return names;
 }
 
@@ -90,8 +103,12 @@ std::uint64_t render_bytes(const RenderOptions& options) {
   std::uint64_t channels = 4;
   for (const std::string& aov : options.aovs) channels += aov == "P" || aov == "N" ? 3 : 1;
   const std::uint64_t pixels = static_cast<std::uint64_t>(options.camera.width) * options.camera.height;
+  const auto needs = [&](const char* aov) {
+    return std::count(options.aovs.begin(), options.aovs.end(), aov) > 0;
+  };
+  const std::uint64_t shadow = needs("shadow_steps") || needs("shadow_tests") ? sizeof(RayCounts) : 0;
   // The image is held once more, in half or 8 bits with its compressed form, while it is encoded.
-  return pixels * (GBuffer::bytes_per_pixel + channels * 2 * sizeof(float));
+  return pixels * (GBuffer::bytes_per_pixel + shadow + channels * 2 * sizeof(float));
 }
 
 Scene one_grid_scene(const BlockGrid& grid, const RenderOptions& options) {
@@ -145,21 +162,41 @@ RenderedImage render_image(const Scene& scene, const RenderOptions& options) {
     for (int c = 0; c < 4; ++c) rgba[c] = result.image.channels[static_cast<std::size_t>(c)].values.data();
 
     auto start = std::chrono::steady_clock::now();
-    const SceneRays objects(scene.instances);
+    const SceneRays objects(scene.instances, options.acceleration);
     stats.prepare_ms.push_back(milliseconds_since(start));
 
-    const Visibility visible{objects, camera, ground ? &*ground : nullptr, options.intersector,
-                             options.normals};
+    start = std::chrono::steady_clock::now();
+    std::optional<PrimaryBounds> bounds;
+    if (options.acceleration.minmax > 0) bounds.emplace(objects, camera, options.acceleration.minmax);
+    double trace_ms = milliseconds_since(start), shade_ms = 0;
+
+    const Visibility visible{objects,
+                             camera,
+                             ground ? &*ground : nullptr,
+                             options.intersector,
+                             options.normals,
+                             bounds ? &*bounds : nullptr};
     Shading shading{scene,           objects,         visible.ground, options.intersector,
                     options.normals, options.shadows, options.seed,   options.camera.eye};
-    double trace_ms = 0, shade_ms = 0;
+    std::vector<RayCounts> shadow_counts;
+    for (const std::string& aov : options.aovs)
+      if (aov == "shadow_steps" || aov == "shadow_tests") shadow_counts.resize(pixels);
+    shading.shadow_counts_of = shadow_counts;
+    SharedCounts primary;
     const auto trace = [&](double x, double y) {
       start = std::chrono::steady_clock::now();
       for_each_tile(width, height, [&](const Tile& tile) {
-        trace_tile(visible, tile, x, y, gbuffer);
+        primary += trace_tile(visible, tile, x, y, gbuffer);
         advance(tile);
       });
       trace_ms += milliseconds_since(start);
+    };
+
+    // Those of shadow rays are complete at the end only.
+    const auto fill_aovs = [&](bool of_shadows) {
+      for (const std::string& aov : options.aovs)
+        if (aov.starts_with("shadow_") == of_shadows)
+          fill_aov(aov, gbuffer, camera, scene, shadow_counts, options.samples, result.image);
     };
 
     for (int sample = 0; sample < options.samples; ++sample) {
@@ -171,17 +208,20 @@ RenderedImage render_image(const Scene& scene, const RenderOptions& options) {
       });
       shade_ms += milliseconds_since(start);
       if (centre_is_a_sample && sample == options.samples / 2) // row and column side/2: the offset (0.5, 0.5)
-        for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, scene, result.image);
+        fill_aovs(false);
     }
     if (needs_centre_pass) {
       trace(0.5, 0.5);
-      for (const std::string& aov : options.aovs) fill_aov(aov, gbuffer, camera, scene, result.image);
+      fill_aovs(false);
     }
+    fill_aovs(true);
     stats.trace_ms.push_back(trace_ms);
     stats.shade_ms.push_back(shade_ms);
     stats.shadow_rays = shading.shadow_rays;
     stats.secondary_rays = shading.secondary_rays;
     stats.hits = shading.hits;
+    stats.primary = primary.sums();
+    stats.shadow = shading.shadow_counts.sums();
   }
   return result;
 }

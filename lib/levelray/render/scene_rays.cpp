@@ -9,7 +9,8 @@
 
 namespace levelray {
 
-SceneRays::SceneRays(std::span<const Instance> instances) {
+SceneRays::SceneRays(std::span<const Instance> instances, const Acceleration& acceleration)
+    : acceleration_(acceleration) {
   std::map<const BlockGrid*, const LevelSet*> ready;
   for (const Instance& instance : instances)
     if (instance.level_set) ready.emplace(instance.grid, instance.level_set);
@@ -23,10 +24,15 @@ SceneRays::SceneRays(std::span<const Instance> instances) {
 }
 
 void SceneRays::closest(std::span<const WorldRay> rays, std::string_view intersector, std::span<Hit> hits,
-                        std::span<int> objects) const {
+                        std::span<int> objects, std::span<const RayBounds> bounds) const {
   assert(rays.size() == hits.size() && rays.size() == objects.size());
+  assert(bounds.empty() || bounds.size() == rays.size() * objects_.size());
+  PrimaryOptions options;
+  options.intersector = intersector;
+  options.traversal = acceleration_.traversal;
   if (objects_.size() == 1 && objects_[0].in_place) {
-    closest_hits(*objects_[0].level_set, rays, intersector, hits);
+    options.bounds = bounds;
+    closest_hits(*objects_[0].level_set, rays, options, hits);
     for (std::size_t i = 0; i < hits.size(); ++i) objects[i] = hits[i] ? 0 : nothing;
     return;
   }
@@ -39,10 +45,11 @@ void SceneRays::closest(std::span<const WorldRay> rays, std::string_view interse
       moved[i] = objects_[o].in_place ? rays[i] : objects_[o].object_from_world.ray(rays[i]);
       if (hits[i]) moved[i].t_max = std::min(moved[i].t_max, hits[i].t);
     }
-    closest_hits(*objects_[o].level_set, moved, intersector, found);
+    if (!bounds.empty()) options.bounds = bounds.subspan(o * rays.size(), rays.size());
+    closest_hits(*objects_[o].level_set, moved, options, found);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       RayCounts counts = hits[i].counts;
-      counts.steps += found[i].counts.steps, counts.tests += found[i].counts.tests;
+      counts += found[i].counts;
       if (found[i] && (!hits[i] || found[i].t < hits[i].t)) {
         hits[i] = found[i];
         objects[i] = static_cast<int>(o);
@@ -78,12 +85,17 @@ void SceneRays::normals(std::span<const WorldRay> rays, std::span<const Hit> hit
   }
 }
 
-void SceneRays::any(std::span<const WorldRay> rays, std::string_view intersector,
-                    std::span<bool> hits) const {
+void SceneRays::any(std::span<const WorldRay> rays, std::string_view intersector, std::span<bool> hits,
+                    std::span<RayCounts> counts) const {
   assert(rays.size() == hits.size());
+  ShadowOptions options;
+  options.intersector = intersector;
+  options.traversal = acceleration_.traversal;
   if (objects_.size() == 1 && objects_[0].in_place && objects_[0].instance->casts_shadows)
-    return any_hits(*objects_[0].level_set, rays, intersector, hits);
+    return any_hits(*objects_[0].level_set, rays, options, hits, counts);
   std::fill(hits.begin(), hits.end(), false);
+  std::fill(counts.begin(), counts.end(), RayCounts{});
+  std::vector<RayCounts> own;
   std::vector<std::size_t> open; // rays that have met nothing yet
   std::vector<WorldRay> moved;
   const std::unique_ptr<bool[]> found(new bool[rays.size()]());
@@ -95,8 +107,10 @@ void SceneRays::any(std::span<const WorldRay> rays, std::string_view intersector
         open.push_back(i);
         moved.push_back(object.in_place ? rays[i] : object.object_from_world.ray(rays[i]));
       }
-    any_hits(*object.level_set, moved, intersector, {found.get(), moved.size()});
+    own.resize(counts.empty() ? 0 : open.size());
+    any_hits(*object.level_set, moved, options, {found.get(), moved.size()}, own);
     for (std::size_t i = 0; i < open.size(); ++i) hits[open[i]] = found[i];
+    for (std::size_t i = 0; i < own.size(); ++i) counts[open[i]] += own[i];
   }
 }
 

@@ -41,6 +41,7 @@ std::vector<Vertex> first_vertices(Shading& shading, const Tile& tile, const GBu
       const bool on_ground = status == PixelStatus::ground;
       Vertex& v = vertices.emplace_back();
       v.root = pixels.size();
+      v.pixel = i;
       pixels.push_back(i);
       v.branch = salt + i; // hashed wherever it is used
       v.depth = 0;
@@ -142,6 +143,7 @@ static void shade_part(Shading& shading, const Tile& tile, const GBuffer& gbuffe
     }
     vertices.clear();
     if (!rays.empty()) vertices = next_vertices(shading, rays, totals);
+    for (Vertex& v : vertices) v.pixel = pixels[v.root];
   }
 
   for (std::size_t p = 0; p < pixels.size(); ++p) {

@@ -11,6 +11,18 @@
 
 namespace levelray {
 
+// Counters to which all threads add.
+struct SharedCounts {
+  std::atomic<std::uint64_t> steps{0}, tests{0}, interpolations{0}, samples{0};
+
+  SharedCounts& operator+=(const CountSums& sums) {
+    steps += sums.steps, tests += sums.tests;
+    interpolations += sums.interpolations, samples += sums.samples;
+    return *this;
+  }
+  CountSums sums() const { return {steps, tests, interpolations, samples}; }
+};
+
 // Everything that shading needs, and the sums it leaves.
 struct Shading {
   const Scene& scene;
@@ -23,15 +35,18 @@ struct Shading {
   std::atomic<std::uint64_t> shadow_rays{0};    // towards lights
   std::atomic<std::uint64_t> secondary_rays{0}; // reflected, refracted, and of ambient occlusion
   std::atomic<std::uint64_t> hits{0};           // primary rays that met an object
+  SharedCounts shadow_counts{};                 // of the rays towards lights
+  std::span<RayCounts> shadow_counts_of{};      // per pixel, likewise; empty where nobody asks
 };
 
 // A point where a path meets a surface.
 struct Vertex {
-  std::size_t root;     // which of the tile's pixels the path belongs to
-  std::uint64_t branch; // a number of the path's own, for random numbers
-  int depth;            // reflections and refractions so far
-  int object;           // SceneRays' index; `nothing`: the ground
-  bool inner;           // met from inside
+  std::size_t root;      // which of the tile's pixels the path belongs to
+  std::size_t pixel = 0; // its index in the image; set by shade_tile
+  std::uint64_t branch;  // a number of the path's own, for random numbers
+  int depth;             // reflections and refractions so far
+  int object;            // SceneRays' index; `nothing`: the ground
+  bool inner;            // met from inside
   const Material* material;
   double coverage; // of the ground; 1 for objects
   Vec3d weight;    // what of the radiance here arrives at the eye

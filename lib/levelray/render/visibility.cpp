@@ -1,5 +1,7 @@
 #include "levelray/render/visibility.hpp"
 
+#include "levelray/trace/hit_normals.hpp"
+
 #include <array>
 #include <cmath>
 
@@ -20,7 +22,7 @@ void add_ground(const Ground& ground, const WorldRay& ray, std::size_t pixel, GB
 
 } // namespace
 
-void trace_tile(const Visibility& visible, const Tile& tile, double x, double y, GBuffer& gbuffer) {
+CountSums trace_tile(const Visibility& visible, const Tile& tile, double x, double y, GBuffer& gbuffer) {
   constexpr std::size_t capacity = static_cast<std::size_t>(tile_size) * tile_size;
   std::array<WorldRay, capacity> ray_store;
   std::array<Hit, capacity> hit_store;
@@ -36,14 +38,26 @@ void trace_tile(const Visibility& visible, const Tile& tile, double x, double y,
   const std::span<Hit> hits(hit_store.data(), count);
   const std::span<Vec3f> normals(normal_store.data(), count);
   const std::span<int> objects(object_store.data(), count);
-  visible.objects.closest(rays, visible.intersector, hits, objects);
+  std::vector<RayBounds> bounds;
+  if (visible.bounds) {
+    bounds.resize(count * visible.objects.size());
+    for (std::size_t i = 0; i < count; ++i)
+      visible.bounds->look_up(tile.x_begin + static_cast<int>(i) % width + x,
+                              tile.y_begin + static_cast<int>(i) / width + y, i, count, bounds);
+  }
+  visible.objects.closest(rays, visible.intersector, hits, objects, bounds);
   visible.objects.normals(rays, hits, objects, visible.normals, normals);
 
+  const RayCounts normal_counts = counts_of_normal(visible.normals);
+  CountSums sums;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel =
         gbuffer.index(tile.x_begin + static_cast<int>(i) % width, tile.y_begin + static_cast<int>(i) / width);
     const Hit& hit = hits[i];
-    gbuffer.counts[pixel] = hit.counts;
+    RayCounts counts = hit.counts;
+    if (hit) counts += normal_counts;
+    gbuffer.counts[pixel] = counts;
+    sums += counts;
     gbuffer.object[pixel] = objects[i];
     gbuffer.status[pixel] = !hit              ? PixelStatus::miss
                             : hit.from_inside ? PixelStatus::inner
@@ -56,6 +70,7 @@ void trace_tile(const Visibility& visible, const Tile& tile, double x, double y,
     }
     if (visible.ground) add_ground(*visible.ground, rays[i], pixel, gbuffer);
   }
+  return sums;
 }
 
 } // namespace levelray

@@ -4,6 +4,7 @@
 #include "levelray/render/camera.hpp"
 #include "levelray/render/gbuffer.hpp"
 #include "levelray/render/ground.hpp"
+#include "levelray/render/primary_bounds.hpp"
 #include "levelray/render/scene_rays.hpp"
 #include "levelray/render/tiles.hpp"
 
@@ -17,9 +18,11 @@ struct Visibility {
   const Camera& camera;
   const Ground* ground;                  // or null
   std::string_view intersector, normals; // names of intersect/intersectors.hpp and normal/normals.hpp
+  const PrimaryBounds* bounds = nullptr; // where there is something along the camera's rays, or null
 };
 
-// Fills the tile's pixels for rays through (i + x, j + y), x and y in [0,1).
-void trace_tile(const Visibility& visible, const Tile& tile, double x, double y, GBuffer& gbuffer);
+// Fills the tile's pixels for rays through (i + x, j + y), x and y in [0,1). Returns the sums of the
+// counters, normals included.
+CountSums trace_tile(const Visibility& visible, const Tile& tile, double x, double y, GBuffer& gbuffer);
 
 } // namespace levelray

@@ -12,11 +12,25 @@ enum class HitStatus : std::uint8_t {
   hit   // the surface: entered from outside or, when the ray began inside, left
 };
 
-// Counters of one ray, as the paper counts them (Jamriska 2010, Tables 3 and 4).
-struct RayCounts {
-  std::uint32_t steps = 0; // nodes (or leaps over empty ones), surface blocks and surface cells visited
-  std::uint32_t tests = 0; // cells whose interpolant was looked at
+// Counters of a ray, or sums of them, as the paper counts (Jamriska 2010, Tables 1 to 4).
+template <class T>
+struct BasicCounts {
+  // Leaping: nodes (or leaps over empty ones), surface blocks and surface cells visited. Stepping: blocks
+  // and, in surface blocks, cells, with and without surface.
+  T steps = 0;
+  T tests = 0;          // surface cells whose interpolant was looked at
+  T interpolations = 0; // values of trilinear interpolants, or of their blossoms, that were computed
+  T samples = 0;        // of the grid that were read for that
+
+  template <class U>
+  BasicCounts& operator+=(const BasicCounts<U>& other) {
+    steps += other.steps, tests += other.tests;
+    interpolations += other.interpolations, samples += other.samples;
+    return *this;
+  }
 };
+using RayCounts = BasicCounts<std::uint32_t>;
+using CountSums = BasicCounts<std::uint64_t>;
 
 struct Hit {
   HitStatus status = HitStatus::miss;

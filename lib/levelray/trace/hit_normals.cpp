@@ -73,6 +73,14 @@ void copy_samples(const LevelSet& level_set, const Vec3i& cell, Neighbourhood& s
   copy_side<2, 2>(level_set, cell, corner, offset, samples);
 }
 
+template <class Work>
+void for_scheme(std::string_view scheme, Work&& work) {
+  if (visit_method<NormalSchemes>(scheme, work)) return;
+  std::string names;
+  for (const std::string& known : method_names<NormalSchemes>()) names += (names.empty() ? "" : ", ") + known;
+  throw Error(ErrorKind::usage, "unknown normal scheme '" + std::string(scheme) + "'; legal are " + names);
+}
+
 } // namespace
 
 void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std::span<const Hit> hits,
@@ -92,10 +100,16 @@ void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std:
       normals[i] = Vec3f(unit_normal<Scheme>(samples, cell_position(origin, per_voxel, rays[i], hits[i])));
     }
   };
-  if (visit_method<NormalSchemes>(scheme, work)) return;
-  std::string names;
-  for (const std::string& known : method_names<NormalSchemes>()) names += (names.empty() ? "" : ", ") + known;
-  throw Error(ErrorKind::usage, "unknown normal scheme '" + std::string(scheme) + "'; legal are " + names);
+  for_scheme(scheme, work);
+}
+
+RayCounts counts_of_normal(std::string_view scheme) {
+  RayCounts counts;
+  for_scheme(scheme, [&]<class Scheme>(Scheme) {
+    counts.samples = Scheme::samples;
+    counts.interpolations = Scheme::interpolations;
+  });
+  return counts;
 }
 
 Vec3f hit_normal(const LevelSet& level_set, const WorldRay& ray, const Hit& hit, std::string_view scheme) {

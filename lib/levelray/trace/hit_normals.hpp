@@ -16,6 +16,8 @@ class LevelSet;
 // unknown scheme.
 void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std::span<const Hit> hits,
                  std::string_view scheme, std::span<Vec3f> normals);
+// The samples and interpolations that a normal by that scheme takes.
+RayCounts counts_of_normal(std::string_view scheme);
 Vec3f hit_normal(const LevelSet& level_set, const WorldRay& ray, const Hit& hit,
                  std::string_view scheme = "interpolation-of-differences");
 

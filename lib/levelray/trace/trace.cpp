@@ -1,6 +1,7 @@
 #include "levelray/trace/trace.hpp"
 
 #include "levelray/accel/cell_walk.hpp"
+#include "levelray/accel/plain_walk.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/trace/level_set.hpp"
@@ -23,6 +24,7 @@ class StartingSide {
     return side_;
   }
   bool inside() const { return side_ < 0; }
+  int interpolations() const { return side_ == 0; } // that the first cell will take
 
  private:
   double side_;
@@ -35,11 +37,6 @@ Vec3i grid_cell(const SurfaceBlocks& surface, const RayFrame& ray, const int (&p
     cell[a] = low + (ray.octant >> a & 1 ? size - 1 - position[a] : position[a]);
   }
   return cell;
-}
-
-void add_counts(RayCounts& counts, const WalkCounts& walked) {
-  counts.steps += walked.nodes + walked.blocks + walked.cells;
-  counts.tests += walked.cells;
 }
 
 template <class Work>
@@ -57,8 +54,9 @@ namespace {
 
 // In batches: frames do not depend on each other, so what computing one has to wait for is filled with
 // others. work(i, frame, entered) for every ray i; it meets nothing unless it entered.
-template <class Work>
-void for_each_frame(const LevelSet& level_set, std::span<const WorldRay> rays, Work&& work) {
+template <class Walk, class Work>
+void for_each_frame(const LevelSet& level_set, std::span<const WorldRay> rays,
+                    std::span<const RayBounds> bounds, Work&& work) {
   constexpr std::size_t batch = 32;
   RayFrame frames[batch];
   bool entered[batch];
@@ -66,20 +64,52 @@ void for_each_frame(const LevelSet& level_set, std::span<const WorldRay> rays, W
     const std::size_t count = std::min(batch, rays.size() - first);
     for (std::size_t i = 0; i < count; ++i)
       entered[i] = enter_box(level_set.surface(), level_set.grid().transform, rays[first + i], frames[i]);
-    skip_empty_nodes(level_set.surface(), {frames, count}, {entered, count});
+    if (!bounds.empty())
+      for (std::size_t i = 0; i < count; ++i)
+        entered[i] = entered[i] &&
+                     narrow_frame(level_set.surface(), frames[i], static_cast<double>(bounds[first + i].near),
+                                  static_cast<double>(bounds[first + i].far));
+    Walk::prepare(level_set.surface(), {frames, count}, {entered, count});
     for (std::size_t i = 0; i < count; ++i) work(first + i, frames[i], entered[i]);
   }
 }
 
-template <class Intersector>
+struct LeapWalk {
+  static void prepare(const SurfaceBlocks& surface, std::span<RayFrame> frames, std::span<bool> entered) {
+    skip_empty_nodes(surface, frames, entered);
+  }
+  template <class Visit>
+  static bool walk(const SurfaceBlocks& surface, const RayFrame& frame, WalkCounts& counts, Visit&& visit) {
+    return walk_cells(surface, frame, counts, visit);
+  }
+};
+
+struct PlainWalk {
+  static void prepare(const SurfaceBlocks& surface, std::span<RayFrame> frames, std::span<bool> entered) {
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      entered[i] = entered[i] && narrow_frame_to_blocks(surface, frames[i]);
+  }
+  template <class Visit>
+  static bool walk(const SurfaceBlocks& surface, const RayFrame& frame, WalkCounts& counts, Visit&& visit) {
+    return walk_cells_plainly(surface, frame, counts, visit);
+  }
+};
+
+RayCounts ray_counts(const WalkCounts& walked, int interpolations) {
+  return {walked.steps(), walked.cells, static_cast<std::uint32_t>(interpolations), 8 * walked.cells};
+}
+
+template <class Intersector, class Walk>
 [[gnu::noinline]] Hit trace_frame(const LevelSet& level_set, const RayFrame& frame) {
   Hit hit;
   StartingSide side(frame);
   WalkCounts walked;
+  int interpolations = side.interpolations();
   double proven = 0; // s of the last point known to lie on the starting side
-  walk_cells(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
+  Walk::walk(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
     CellRoot root;
-    if (!Intersector::find(cell.segment, side.at_first(cell.segment), root)) {
+    if (!Intersector::find(cell.segment, side.at_first(cell.segment), root,
+                           [&](int n) { interpolations += n; })) {
       proven = cell.in;
       return false;
     }
@@ -90,51 +120,79 @@ template <class Intersector>
     return true;
   });
   hit.from_inside = hit && side.inside();
-  add_counts(hit.counts, walked);
+  hit.counts = ray_counts(walked, walked.cells ? interpolations : 0);
   return hit;
 }
 
-template <class Intersector>
+template <class Intersector, class Walk>
 [[gnu::noinline]] bool any_in_frame(const LevelSet& level_set, const RayFrame& frame, RayCounts& counts) {
   StartingSide side(frame);
   WalkCounts walked;
-  const bool hit = walk_cells(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
-    return Intersector::exists(cell.segment, side.at_first(cell.segment));
+  int interpolations = side.interpolations();
+  const bool hit = Walk::walk(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
+    return Intersector::exists(cell.segment, side.at_first(cell.segment),
+                               [&](int n) { interpolations += n; });
   });
-  add_counts(counts, walked);
+  counts = ray_counts(walked, walked.cells ? interpolations : 0);
   return hit;
 }
 
+template <class Work>
+void for_traversal(Traversal traversal, Work&& work) {
+  if (traversal == Traversal::plain)
+    work(PlainWalk());
+  else
+    work(LeapWalk());
+}
+
 } // namespace
+
+const std::vector<std::string>& traversal_names() {
+  static const std::vector<std::string> names{"leaps", "plain"};
+  return names;
+}
 
 template <class Intersector>
 Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
   RayFrame frame;
   return enter_box(level_set.surface(), level_set.grid().transform, ray, frame)
-             ? trace_frame<Intersector>(level_set, frame)
+             ? trace_frame<Intersector, LeapWalk>(level_set, frame)
              : Hit{};
 }
 
 template <class Intersector>
 bool trace_any(const LevelSet& level_set, const WorldRay& ray, RayCounts& counts) {
   RayFrame frame;
-  return enter_box(level_set.surface(), level_set.grid().transform, ray, frame) &&
-         any_in_frame<Intersector>(level_set, frame, counts);
+  if (!enter_box(level_set.surface(), level_set.grid().transform, ray, frame)) return false;
+  RayCounts own;
+  const bool hit = any_in_frame<Intersector, LeapWalk>(level_set, frame, own);
+  counts += own;
+  return hit;
+}
+
+void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, const PrimaryOptions& options,
+                  std::span<Hit> hits) {
+  assert(rays.size() == hits.size() && (options.bounds.empty() || options.bounds.size() == rays.size()));
+  for_intersector(options.intersector, [&]<class Intersector>(Intersector) {
+    for_traversal(options.traversal, [&]<class Walk>(Walk) {
+      for_each_frame<Walk>(level_set, rays, options.bounds,
+                           [&](std::size_t i, const RayFrame& frame, bool entered) {
+                             if (entered) {
+                               hits[i] = trace_frame<Intersector, Walk>(level_set, frame);
+                               return;
+                             }
+                             hits[i] = Hit{};
+                             hits[i].counts.steps = frame.skipped;
+                           });
+    });
+  });
 }
 
 void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
                   std::span<Hit> hits) {
-  assert(rays.size() == hits.size());
-  for_intersector(intersector, [&]<class Intersector>(Intersector) {
-    for_each_frame(level_set, rays, [&](std::size_t i, const RayFrame& frame, bool entered) {
-      if (entered) {
-        hits[i] = trace_frame<Intersector>(level_set, frame);
-      } else {
-        hits[i] = Hit{};
-        hits[i].counts.steps = frame.skipped;
-      }
-    });
-  });
+  PrimaryOptions options;
+  options.intersector = intersector;
+  closest_hits(level_set, rays, options, hits);
 }
 
 Hit closest_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector) {
@@ -143,17 +201,42 @@ Hit closest_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view
   return hit;
 }
 
-void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
-              std::span<bool> hits, RayCounts* counts) {
+namespace {
+
+// add(i, counts) for every ray i.
+template <class Add>
+void find_any(const LevelSet& level_set, std::span<const WorldRay> rays, const ShadowOptions& options,
+              std::span<bool> hits, Add&& add) {
   assert(rays.size() == hits.size());
-  RayCounts sum;
-  for_intersector(intersector, [&]<class Intersector>(Intersector) {
-    for_each_frame(level_set, rays, [&](std::size_t i, const RayFrame& frame, bool entered) {
-      hits[i] = entered && any_in_frame<Intersector>(level_set, frame, sum);
-      if (!entered) sum.steps += frame.skipped;
+  for_intersector(options.intersector, [&]<class Intersector>(Intersector) {
+    for_traversal(options.traversal, [&]<class Walk>(Walk) {
+      for_each_frame<Walk>(level_set, rays, {}, [&](std::size_t i, const RayFrame& frame, bool entered) {
+        RayCounts counts;
+        counts.steps = frame.skipped;
+        hits[i] = entered && any_in_frame<Intersector, Walk>(level_set, frame, counts);
+        add(i, counts);
+      });
     });
   });
-  if (counts) counts->steps += sum.steps, counts->tests += sum.tests;
+}
+
+} // namespace
+
+void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, const ShadowOptions& options,
+              std::span<bool> hits, std::span<RayCounts> counts) {
+  assert(counts.empty() || counts.size() == rays.size());
+  find_any(level_set, rays, options, hits, [&](std::size_t i, const RayCounts& own) {
+    if (!counts.empty()) counts[i] = own;
+  });
+}
+
+void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, std::string_view intersector,
+              std::span<bool> hits, RayCounts* counts) {
+  ShadowOptions options;
+  options.intersector = intersector;
+  RayCounts sum;
+  find_any(level_set, rays, options, hits, [&](std::size_t, const RayCounts& own) { sum += own; });
+  if (counts) *counts += sum;
 }
 
 bool any_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view intersector,

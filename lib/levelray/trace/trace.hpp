@@ -10,15 +10,43 @@
 // unknown intersector.
 #pragma once
 
+#include "levelray/accel/minmax_buffer.hpp"
 #include "levelray/core/ray.hpp"
 #include "levelray/trace/hit.hpp"
 
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace levelray {
 
 class LevelSet;
+
+// How rays find their cells. The answers are the same to the last bit, but for the counts of steps.
+enum class Traversal : std::uint8_t {
+  leaps, // masks of nodes and blocks, and leaps over empty space (accel/cell_walk.hpp)
+  plain  // the paper's: block by block, cell by cell (accel/plain_walk.hpp)
+};
+const std::vector<std::string>& traversal_names(); // in the order of the values
+
+struct PrimaryOptions {
+  std::string_view intersector = "exact";
+  Traversal traversal = Traversal::leaps;
+  // Per ray, or none: where it can meet the surface, as a MinMaxBuffer says. Changes no answer, saves steps.
+  std::span<const RayBounds> bounds = {};
+};
+
+struct ShadowOptions {
+  std::string_view intersector = "exact";
+  Traversal traversal = Traversal::leaps;
+};
+
+void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, const PrimaryOptions& options,
+                  std::span<Hit> hits);
+// Whether closest_hits would find hits. `counts`, per ray, may be empty.
+void any_hits(const LevelSet& level_set, std::span<const WorldRay> rays, const ShadowOptions& options,
+              std::span<bool> hits, std::span<RayCounts> counts);
 
 // By the intersector of that name (intersect/intersectors.hpp, or `false-position`, short for its first). All
 // throw Error(usage), naming the legal ones, where there is none; none looks the name up per ray but the
