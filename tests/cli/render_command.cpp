@@ -28,7 +28,7 @@ TEST_CASE("render's JSON has the documented keys, and times of repetitions as me
   INFO(result.err);
   REQUIRE(result.code == 0);
   Json json = Json::parse(result.out);
-  CHECK(keys(json) == std::set<std::string>{"grid", "options", "rays", "hits", "ms", "warnings"});
+  CHECK(keys(json) == std::set<std::string>{"grid", "options", "rays", "hits", "counts", "ms", "warnings"});
   CHECK(keys(json["grid"]) ==
         std::set<std::string>{"voxel_size", "dims", "blocks", "active_samples", "bytes"});
   CHECK(keys(json["rays"]) == std::set<std::string>{"primary", "shadow"});
@@ -47,7 +47,12 @@ TEST_CASE("render's JSON has the documented keys, and times of repetitions as me
                                                        "strict",      "grid",
                                                        "trust_input", "max_memory",
                                                        "resolution",  "band",
-                                                       "sign",        "redistance"});
+                                                       "sign",        "redistance",
+                                                       "primary",     "minmax",
+                                                       "traversal"});
+  for (const char* rays : {"primary", "shadow"})
+    for (const char* count : {"steps", "tests", "interpolations", "samples"})
+      CHECK(json["counts"][rays][count] > 0);
   CHECK(json["rays"]["primary"] == 64 * 48);
   CHECK(json["rays"]["shadow"] > 0);
   CHECK(json["hits"] > 64 * 48 / 10);

@@ -52,6 +52,7 @@ bool cut(const SurfaceBlocks& surface, RayFrame& ray, double start, double last)
 } // namespace
 
 bool narrow_frame(const SurfaceBlocks& surface, RayFrame& ray, double near, double far) {
+  if (near > far) return false;
   // The frame's rounding is some 2^-50 of the distances in voxels (ray_frame.hpp), that of the subtractions
   // here 2^-52 of the times; 2^-12 voxel covers that of the box itself, which has 2^22 voxels at the most.
   const double per_t = 1 / ray.t_per_s;

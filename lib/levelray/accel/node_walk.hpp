@@ -85,8 +85,8 @@ struct NodeExit {
 } // namespace walk
 
 // Says that the ray meets surface cells in [near, far] only, in units of its own t, if it meets any: moves
-// the walk's beginning and end there, with a margin for the rounding of the frame. Whatever is not a number
-// says nothing. Returns false where nothing is left of the ray.
+// the walk's beginning and end there, with a margin for the rounding of the frame. near > far: it meets none;
+// NaN says nothing. Returns false where nothing is left of the ray.
 //
 // The walk sees the same surface cells in the same order, with the same segments: those depend on the frame's
 // origin and end, which stay. What it leaves out are nodes, and blocks of a node, that the ray has left
