@@ -28,6 +28,20 @@ void AccelerationOptions::add_to(CLI::App& command, const std::string& group) {
       ->capture_default_str()
       ->type_name("NAME")
       ->group(group);
+  command
+      .add_option("--shadow", shadow,
+                  "How shadow rays use the inside of closed surfaces: " + join(shadow_scheme_names()) +
+                      " (plain: not at all; occluder: the paper's way)")
+      ->capture_default_str()
+      ->type_name("NAME")
+      ->group(group);
+  command
+      .add_option("--occluder-steps", occluder_steps,
+                  "Blocks that --shadow occluder looks at behind the first with surface")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str()
+      ->type_name("N")
+      ->group(group);
 }
 
 Acceleration AccelerationOptions::resolve() const {
@@ -35,11 +49,17 @@ Acceleration AccelerationOptions::resolve() const {
   Acceleration acceleration;
   acceleration.minmax = primary == "minmax" ? minmax : 0;
   acceleration.traversal = static_cast<Traversal>(find_name("--traversal", traversal, traversal_names()));
+  acceleration.shadow = static_cast<ShadowScheme>(find_name("--shadow", shadow, shadow_scheme_names()));
+  acceleration.occluder_steps = occluder_steps;
   return acceleration;
 }
 
 Json AccelerationOptions::json() const {
-  return {{"primary", primary}, {"minmax", minmax}, {"traversal", traversal}};
+  return {{"primary", primary},
+          {"minmax", minmax},
+          {"traversal", traversal},
+          {"shadow", shadow},
+          {"occluder_steps", occluder_steps}};
 }
 
 } // namespace levelray

@@ -7,8 +7,8 @@
 namespace levelray {
 
 struct AccelerationOptions {
-  std::string primary = "dda", traversal = "leaps";
-  int minmax = 128;
+  std::string primary = "dda", traversal = "leaps", shadow = "boxes";
+  int minmax = 128, occluder_steps = 12;
 
   void add_to(CLI::App& command, const std::string& group);
   // Throws Error(usage) for unknown words.

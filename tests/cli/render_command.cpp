@@ -33,23 +33,24 @@ TEST_CASE("render's JSON has the documented keys, and times of repetitions as me
         std::set<std::string>{"voxel_size", "dims", "blocks", "active_samples", "bytes"});
   CHECK(keys(json["rays"]) == std::set<std::string>{"primary", "shadow"});
   CHECK(keys(json["ms"]) == std::set<std::string>{"load", "prepare", "trace", "shade", "write", "total"});
-  CHECK(keys(json["options"]) == std::set<std::string>{"size",        "eye",
-                                                       "target",      "up",
-                                                       "fov",         "intersector",
-                                                       "normals",     "lights",
-                                                       "shading",     "shadows",
-                                                       "ground",      "samples",
-                                                       "aov",         "repeat",
-                                                       "threads",     "output",
-                                                       "input",       "format",
-                                                       "units",       "drop_bad",
-                                                       "salvage",     "trust_orientation",
-                                                       "strict",      "grid",
-                                                       "trust_input", "max_memory",
-                                                       "resolution",  "band",
-                                                       "sign",        "redistance",
-                                                       "primary",     "minmax",
-                                                       "traversal"});
+  CHECK(keys(json["options"]) == std::set<std::string>{"size",          "eye",
+                                                       "target",        "up",
+                                                       "fov",           "intersector",
+                                                       "normals",       "lights",
+                                                       "shading",       "shadows",
+                                                       "ground",        "samples",
+                                                       "aov",           "repeat",
+                                                       "threads",       "output",
+                                                       "input",         "format",
+                                                       "units",         "drop_bad",
+                                                       "salvage",       "trust_orientation",
+                                                       "strict",        "grid",
+                                                       "trust_input",   "max_memory",
+                                                       "resolution",    "band",
+                                                       "sign",          "redistance",
+                                                       "primary",       "minmax",
+                                                       "traversal",     "shadow",
+                                                       "occluder_steps"});
   for (const char* rays : {"primary", "shadow"})
     for (const char* count : {"steps", "tests", "interpolations", "samples"})
       CHECK(json["counts"][rays][count] > 0);

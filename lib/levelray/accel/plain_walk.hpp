@@ -62,7 +62,7 @@ template <class Visit>
 class BlockSteps {
  public:
   BlockSteps(const SurfaceBlocks& surface, const RayFrame& ray)
-      : surface_(surface), ray_(ray), table_(surface, ray.octant),
+      : surface_(&surface), ray_(&ray), table_(surface, ray.octant),
         mirrored_bits_(walk::mirrored_bits(ray.octant)), s_(ray.start) {
     for (int a = 0; a < 3; ++a) {
       const int first = 4 * ray.start_node[a];
@@ -76,52 +76,70 @@ class BlockSteps {
   }
 
   // Calls visit(block's index in the surface, its corner) for the surface blocks on the ray's way, until it
-  // returns true. Returns whether it did. Adds a count per block, empty or not.
+  // returns true. Returns whether it did. Adds a count per block, empty or not. Begins at the block where the
+  // ray is now, which is not its first one if it has `begun` to move.
   template <class Visit>
-  bool walk(std::uint32_t& count, Visit&& visit) {
+  bool walk(std::uint32_t& count, bool begun, Visit&& visit) {
     const auto visit_at = [&](const int(&at)[3]) {
       ++count;
-      const int bit = ((at[0] & 3) | (at[1] & 3) << 2 | (at[2] & 3) << 4) ^ mirrored_bits_;
+      const int bit = bit_of(at);
       if (!(blocks_ >> bit & 1)) return false;
       const int corner[3] = {at[0] * block_dim, at[1] * block_dim, at[2] * block_dim};
       return visit(first_ + count_bits(blocks_ & ((std::uint64_t{1} << bit) - 1)), corner);
     };
-    if (visit_left_behind(visit_at) || visit_at(at_)) return true;
-    for (;;) {
-      const double next = std::min(leave_[0], std::min(leave_[1], leave_[2]));
-      if (!(next <= ray_.last)) return false;
-      s_ = std::max(s_, next);
-      const int tied = (leave_[0] == next) | (leave_[1] == next) << 1 | (leave_[2] == next) << 2;
+    if ((!begun && visit_left_behind(visit_at)) || visit_at(at_)) return true;
+    for (int tied; next_planes(tied);) {
       if (tied & (tied - 1)) [[unlikely]] {
         if (visit_beside(tied, visit_at)) return true;
       }
-      int node_planes = 0;
-      for (int a = 0; a < 3; ++a)
-        if (tied >> a & 1) {
-          leave_[a] = time(a, ++at_[a] + 1);
-          node_planes |= (at_[a] & 3) == 0;
-        }
-      if (node_planes && !enter_node(at_)) return false;
+      if (!cross(tied)) return false;
       if (visit_at(at_)) return true;
     }
+    return false;
   }
 
+  // The planes (bits) that the ray crosses next; false where it ends before.
+  bool next_planes(int& tied) {
+    const double next = std::min(leave_[0], std::min(leave_[1], leave_[2]));
+    if (!(next <= ray_->last)) return false;
+    s_ = std::max(s_, next);
+    tied = (leave_[0] == next) | (leave_[1] == next) << 1 | (leave_[2] == next) << 2;
+    return true;
+  }
+  // Crosses them; false where there is nothing behind.
+  bool cross(int tied) {
+    int node_planes = 0;
+    for (int a = 0; a < 3; ++a)
+      if (tied >> a & 1) {
+        leave_[a] = time(a, ++at_[a] + 1);
+        node_planes |= (at_[a] & 3) == 0;
+      }
+    return !node_planes || enter_node(at_);
+  }
+  bool on_surface() const { return blocks_ >> bit_of(at_) & 1; }
+  // The table's entry and the bit of the block where the ray is.
+  std::size_t entry() const { return entry_; }
+  int bit() const { return bit_of(at_); }
+
  private:
+  int bit_of(const int (&at)[3]) const {
+    return ((at[0] & 3) | (at[1] & 3) << 2 | (at[2] & 3) << 4) ^ mirrored_bits_;
+  }
   double time(int axis, int block_plane) const {
-    return plane_time(ray_, axis, block_plane * double{block_dim});
+    return plane_time(*ray_, axis, block_plane * double{block_dim});
   }
 
   // Looks up the node of a block; false beyond the table and at the ray's end (NodeExit::move).
   bool enter_node(const int (&at)[3]) {
     const int node[3] = {at[0] >> 2, at[1] >> 2, at[2] >> 2};
     if (!(node[0] < table_.dims[0] && node[1] < table_.dims[1] && node[2] < table_.dims[2])) return false;
-    const std::size_t entry = table_.entry(node);
+    entry_ = table_.entry(node);
     blocks_ = 0;
-    if (!table_.leaps[entry]) {
-      blocks_ = surface_.node(entry).blocks;
-      first_ = surface_.node(entry).first;
+    if (!table_.leaps[entry_]) {
+      blocks_ = surface_->node(entry_).blocks;
+      first_ = surface_->node(entry_).first;
     }
-    return s_ < ray_.last;
+    return s_ < ray_->last;
   }
 
   // Blocks of the first node that the ray leaves where it begins.
@@ -167,27 +185,27 @@ class BlockSteps {
     }
   }
 
-  const SurfaceBlocks& surface_;
-  const RayFrame& ray_;
+  const SurfaceBlocks* surface_;
+  const RayFrame* ray_;
   NodeTable table_;
   int mirrored_bits_;
   double s_;
   int at_[3];                            // in blocks of the frame
   double leave_[3];                      // times of the upper planes of the block there
-  std::uint64_t blocks_ = 0, first_ = 0; // of the node there
+  std::size_t entry_ = 0;                // of the node there, and its
+  std::uint64_t blocks_ = 0, first_ = 0; // surface blocks
 };
 
 } // namespace walk
 
-// As walk_cells.
+// As walk_cells, from where `steps` is, which has `begun` to move or not.
 template <class Visit>
-bool walk_cells_plainly(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& counts,
-                        Visit&& visit) {
+bool walk_cells_plainly_from(walk::BlockSteps& steps, bool begun, const SurfaceBlocks& surface,
+                             const RayFrame& ray, WalkCounts& counts, Visit&& visit) {
   const walk::CellReader reader(ray.octant);
   const int mirrored_bits = walk::mirrored_bits(ray.octant);
   VisitedCell cell;
-  walk::BlockSteps steps(surface, ray);
-  return steps.walk(counts.blocks, [&](std::size_t block, const int(&corner)[3]) {
+  return steps.walk(counts.blocks, begun, [&](std::size_t block, const int(&corner)[3]) {
     const walk::PlaneTimes times(ray, corner, 1);
     const double in = times.in(0, 0, 0, 0);
     const double out = std::min(std::min(times.s[0][4], times.s[1][4]), std::min(times.s[2][4], ray.end));
@@ -207,6 +225,14 @@ bool walk_cells_plainly(const SurfaceBlocks& surface, const RayFrame& ray, WalkC
       return bool(visit(static_cast<const VisitedCell&>(cell)));
     });
   });
+}
+
+// As walk_cells.
+template <class Visit>
+bool walk_cells_plainly(const SurfaceBlocks& surface, const RayFrame& ray, WalkCounts& counts,
+                        Visit&& visit) {
+  walk::BlockSteps steps(surface, ray);
+  return walk_cells_plainly_from(steps, false, surface, ray, counts, visit);
 }
 
 } // namespace levelray

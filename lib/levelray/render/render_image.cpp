@@ -35,6 +35,8 @@ void check_render_options(const RenderOptions& options) {
   samples_per_side(options.samples);
   if (options.acceleration.minmax < 0 || options.acceleration.minmax > 4096)
     throw Error(ErrorKind::usage, "--minmax must be within 1 and 4096");
+  if (options.acceleration.occluder_steps < 0 || options.acceleration.occluder_steps > 1000000)
+    throw Error(ErrorKind::usage, "--occluder-steps must be within 0 and 1000000");
   if (options.repeat < 1) throw Error(ErrorKind::usage, "--repeat must be at least 1");
   for (const std::string& aov : options.aovs) {
     bool known = false;
@@ -162,7 +164,9 @@ RenderedImage render_image(const Scene& scene, const RenderOptions& options) {
     for (int c = 0; c < 4; ++c) rgba[c] = result.image.channels[static_cast<std::size_t>(c)].values.data();
 
     auto start = std::chrono::steady_clock::now();
-    const SceneRays objects(scene.instances, options.acceleration);
+    Acceleration acceleration = options.acceleration;
+    if (!options.shadows && scene.ambient_occlusion.samples == 0) acceleration.shadow = ShadowScheme::plain;
+    const SceneRays objects(scene.instances, acceleration);
     stats.prepare_ms.push_back(milliseconds_since(start));
 
     start = std::chrono::steady_clock::now();

@@ -12,12 +12,17 @@ namespace levelray {
 SceneRays::SceneRays(std::span<const Instance> instances, const Acceleration& acceleration)
     : acceleration_(acceleration) {
   std::map<const BlockGrid*, const LevelSet*> ready;
+  std::map<const LevelSet*, const Occluders*> solids;
   for (const Instance& instance : instances)
     if (instance.level_set) ready.emplace(instance.grid, instance.level_set);
   for (const Instance& instance : instances) {
     const LevelSet*& level_set = ready[instance.grid];
     if (!level_set) level_set = level_sets_.emplace_back(std::make_unique<LevelSet>(*instance.grid)).get();
-    objects_.push_back({&instance, level_set, instance.world_from_object.inverse(),
+    const Occluders*& occluders = solids[level_set];
+    if (!occluders && acceleration.shadow != ShadowScheme::plain)
+      occluders =
+          occluders_.emplace_back(std::make_unique<Occluders>(*instance.grid, level_set->surface())).get();
+    objects_.push_back({&instance, level_set, occluders, instance.world_from_object.inverse(),
                         instance.world_from_object.is_identity(),
                         0x1p13 * instance.grid->transform.voxel_size * instance.world_from_object.scale});
   }
@@ -91,6 +96,9 @@ void SceneRays::any(std::span<const WorldRay> rays, std::string_view intersector
   ShadowOptions options;
   options.intersector = intersector;
   options.traversal = acceleration_.traversal;
+  options.scheme = acceleration_.shadow;
+  options.occluder_steps = acceleration_.occluder_steps;
+  options.occluders = objects_.empty() ? nullptr : objects_[0].occluders;
   if (objects_.size() == 1 && objects_[0].in_place && objects_[0].instance->casts_shadows)
     return any_hits(*objects_[0].level_set, rays, options, hits, counts);
   std::fill(hits.begin(), hits.end(), false);
@@ -107,6 +115,7 @@ void SceneRays::any(std::span<const WorldRay> rays, std::string_view intersector
         open.push_back(i);
         moved.push_back(object.in_place ? rays[i] : object.object_from_world.ray(rays[i]));
       }
+    options.occluders = object.occluders;
     own.resize(counts.empty() ? 0 : open.size());
     any_hits(*object.level_set, moved, options, {found.get(), moved.size()}, own);
     for (std::size_t i = 0; i < open.size(); ++i) hits[open[i]] = found[i];

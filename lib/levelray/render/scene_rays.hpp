@@ -17,6 +17,7 @@ namespace levelray {
 struct SceneObject {
   const Instance* instance;
   const LevelSet* level_set;
+  const Occluders* occluders; // or null
   Similarity object_from_world;
   bool in_place;         // the transform is the identity: rays need not be moved
   double precise_within; // 2^13 voxels, in world units: a hit's safe point with larger coordinates may have
@@ -29,7 +30,8 @@ class SceneRays {
  public:
   static constexpr int nothing = -1;
 
-  // Builds a level set for each distinct grid that comes without one. The instances must outlive this.
+  // Builds a level set for each distinct grid that comes without one, and what the acceleration's shadow
+  // scheme needs. The instances must outlive this.
   explicit SceneRays(std::span<const Instance> instances, const Acceleration& acceleration = {});
 
   const SceneObject& object(int index) const { return objects_[static_cast<std::size_t>(index)]; }
@@ -53,6 +55,7 @@ class SceneRays {
  private:
   Acceleration acceleration_;
   std::vector<std::unique_ptr<LevelSet>> level_sets_; // built here
+  std::vector<std::unique_ptr<Occluders>> occluders_;
   std::vector<SceneObject> objects_;
 };
 

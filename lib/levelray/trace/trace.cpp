@@ -1,7 +1,7 @@
 #include "levelray/trace/trace.hpp"
 
 #include "levelray/accel/cell_walk.hpp"
-#include "levelray/accel/plain_walk.hpp"
+#include "levelray/accel/occluder_walk.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/trace/level_set.hpp"
@@ -75,6 +75,7 @@ void for_each_frame(const LevelSet& level_set, std::span<const WorldRay> rays,
 }
 
 struct LeapWalk {
+  static constexpr bool steps_plainly = false;
   static void prepare(const SurfaceBlocks& surface, std::span<RayFrame> frames, std::span<bool> entered) {
     skip_empty_nodes(surface, frames, entered);
   }
@@ -85,6 +86,7 @@ struct LeapWalk {
 };
 
 struct PlainWalk {
+  static constexpr bool steps_plainly = true;
   static void prepare(const SurfaceBlocks& surface, std::span<RayFrame> frames, std::span<bool> entered) {
     for (std::size_t i = 0; i < frames.size(); ++i)
       entered[i] = entered[i] && narrow_frame_to_blocks(surface, frames[i]);
@@ -124,17 +126,25 @@ template <class Intersector, class Walk>
   return hit;
 }
 
+// walk(counts, visit) shows the ray's cells.
 template <class Intersector, class Walk>
-[[gnu::noinline]] bool any_in_frame(const LevelSet& level_set, const RayFrame& frame, RayCounts& counts) {
+[[gnu::always_inline]] inline bool any_in_walk(const RayFrame& frame, RayCounts& counts, Walk&& walk) {
   StartingSide side(frame);
   WalkCounts walked;
   int interpolations = side.interpolations();
-  const bool hit = Walk::walk(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
+  const bool hit = walk(walked, [&](const VisitedCell& cell) {
     return Intersector::exists(cell.segment, side.at_first(cell.segment),
                                [&](int n) { interpolations += n; });
   });
   counts = ray_counts(walked, walked.cells ? interpolations : 0);
   return hit;
+}
+
+template <class Intersector, class Walk>
+[[gnu::noinline]] bool any_in_frame(const LevelSet& level_set, const RayFrame& frame, RayCounts& counts) {
+  return any_in_walk<Intersector>(frame, counts, [&](WalkCounts& walked, auto&& visit) {
+    return Walk::walk(level_set.surface(), frame, walked, visit);
+  });
 }
 
 template <class Work>
@@ -149,6 +159,11 @@ void for_traversal(Traversal traversal, Work&& work) {
 
 const std::vector<std::string>& traversal_names() {
   static const std::vector<std::string> names{"leaps", "plain"};
+  return names;
+}
+
+const std::vector<std::string>& shadow_scheme_names() {
+  static const std::vector<std::string> names{"plain", "occluder", "boxes"};
   return names;
 }
 
@@ -203,17 +218,81 @@ Hit closest_hit(const LevelSet& level_set, const WorldRay& ray, std::string_view
 
 namespace {
 
+// The paper's scheme: looks ahead for the inside; returns what is known then, or walks.
+template <class Intersector, class Walk>
+bool any_behind(const LevelSet& level_set, const RayFrame& frame, const Occluders& occluders, int most_steps,
+                RayCounts& counts) {
+  const SurfaceBlocks& surface = level_set.surface();
+  walk::BlockSteps steps(surface, frame);
+  bool begun = false;
+  std::uint32_t looked_at = 0;
+  const Ahead ahead = look_ahead(occluders, most_steps, steps, begun, looked_at);
+  bool hit = ahead == Ahead::inside && occluders.begins_outside(surface, frame);
+  if (!hit && ahead != Ahead::nothing) {
+    // Who began inside has to look at everything.
+    if (Walk::steps_plainly && ahead == Ahead::unknown)
+      hit = any_in_walk<Intersector>(frame, counts, [&](WalkCounts& walked, auto&& visit) {
+        return walk_cells_plainly_from(steps, begun, surface, frame, walked, visit);
+      });
+    else
+      hit = any_in_frame<Intersector, Walk>(level_set, frame, counts);
+  }
+  counts.steps += looked_at;
+  return hit;
+}
+
+// Tries boxes of the inside. Rays that follow each other tend to meet the same: the one that was met last is
+// tried first, and after a ray that met nothing at all, it alone.
+class BoxTrials {
+ public:
+  explicit BoxTrials(const ShadowOptions& options) {
+    if (!options.occluders || options.scheme != ShadowScheme::boxes || !options.occluders->consistent())
+      return;
+    occluders_ = options.occluders;
+    count_ = occluders_->boxes().size();
+    for (std::size_t i = 0; i < count_; ++i) order_[i] = i;
+  }
+  bool meet(const SurfaceBlocks& surface, const RayFrame& frame) {
+    const std::size_t trials = last_hit_ ? count_ : std::min<std::size_t>(count_, 1);
+    for (std::size_t i = 0; i < trials; ++i) {
+      if (!meets(surface, frame, occluders_->boxes()[order_[i]])) continue;
+      if (!occluders_->begins_outside(surface, frame)) return false;
+      std::swap(order_[0], order_[i]);
+      return true;
+    }
+    return false;
+  }
+  void tell(bool hit) { last_hit_ = hit; }
+
+ private:
+  const Occluders* occluders_ = nullptr;
+  std::size_t count_ = 0, order_[Occluders::most_boxes];
+  bool last_hit_ = true;
+};
+
 // add(i, counts) for every ray i.
 template <class Add>
 void find_any(const LevelSet& level_set, std::span<const WorldRay> rays, const ShadowOptions& options,
               std::span<bool> hits, Add&& add) {
   assert(rays.size() == hits.size());
+  const bool looks_ahead =
+      options.scheme == ShadowScheme::occluder && options.occluders && options.occluders->consistent();
+  BoxTrials boxes(options);
   for_intersector(options.intersector, [&]<class Intersector>(Intersector) {
     for_traversal(options.traversal, [&]<class Walk>(Walk) {
+      const auto decide = [&](const RayFrame& frame, RayCounts& counts) {
+        if (looks_ahead)
+          return any_behind<Intersector, Walk>(level_set, frame, *options.occluders, options.occluder_steps,
+                                               counts);
+        if (boxes.meet(level_set.surface(), frame)) return true;
+        const bool hit = any_in_frame<Intersector, Walk>(level_set, frame, counts);
+        boxes.tell(hit);
+        return hit;
+      };
       for_each_frame<Walk>(level_set, rays, {}, [&](std::size_t i, const RayFrame& frame, bool entered) {
         RayCounts counts;
         counts.steps = frame.skipped;
-        hits[i] = entered && any_in_frame<Intersector, Walk>(level_set, frame, counts);
+        hits[i] = entered && decide(frame, counts);
         add(i, counts);
       });
     });

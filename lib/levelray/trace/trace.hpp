@@ -11,6 +11,7 @@
 #pragma once
 
 #include "levelray/accel/minmax_buffer.hpp"
+#include "levelray/accel/occluders.hpp"
 #include "levelray/core/ray.hpp"
 #include "levelray/trace/hit.hpp"
 
@@ -37,9 +38,20 @@ struct PrimaryOptions {
   std::span<const RayBounds> bounds = {};
 };
 
+// How rays that ask for any hit are spared work (accel/occluders.hpp). The answers are the same.
+enum class ShadowScheme : std::uint8_t {
+  plain,    // they walk as others do
+  occluder, // the paper's: they look ahead through some blocks for the inside, then walk (occluder_walk.hpp)
+  boxes     // they try a few large boxes of the inside, then walk
+};
+const std::vector<std::string>& shadow_scheme_names(); // in the order of the values
+
 struct ShadowOptions {
   std::string_view intersector = "exact";
   Traversal traversal = Traversal::leaps;
+  ShadowScheme scheme = ShadowScheme::plain;
+  int occluder_steps = 12;              // n of the paper: blocks looked at behind the first with surface
+  const Occluders* occluders = nullptr; // of the level set; without, or where not consistent, rays go plainly
 };
 
 void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, const PrimaryOptions& options,
