@@ -7,7 +7,7 @@
 namespace levelray {
 
 struct AccelerationOptions {
-  std::string primary = "dda", traversal = "leaps", shadow = "boxes";
+  std::string primary = "minmax", traversal = "leaps", shadow = "boxes";
   int minmax = 128, occluder_steps = 12;
 
   void add_to(CLI::App& command, const std::string& group);
