@@ -6,6 +6,7 @@
 #include "levelray/io/exr_writer.hpp"
 #include "levelray/io/output_file.hpp"
 #include "levelray/io/png_writer.hpp"
+#include "levelray/render/false_colour.hpp"
 #include "render_options.hpp"
 
 #include <fmt/format.h>
@@ -51,11 +52,13 @@ double median(std::vector<double> ms) {
   return (ms[(ms.size() - 1) / 2] + ms[ms.size() / 2]) / 2;
 }
 
-void write_picture(const std::string& path, const Image& image, const Camera& camera) {
+void write_picture(const std::string& path, const Image& image, const Camera& camera,
+                   const std::string& legend) {
   if (extension_of(path) == ".png")
     write_file_atomically(path, encode_png(image));
   else
-    write_file_atomically(path, encode_exr(image, {&camera, "levelray " LEVELRAY_VERSION, channel_comments}));
+    write_file_atomically(path, encode_exr(image, {&camera, "levelray " LEVELRAY_VERSION,
+                                                   std::string(channel_comments) + legend}));
 }
 
 void Render::run() const {
@@ -79,7 +82,7 @@ void Render::run() const {
   const double rays = static_cast<double>(options.camera.width) * options.camera.height * options.samples;
   progress.begin("render", rays * options.repeat, " rays");
   options.progress = [&](double done) { progress.report(done); };
-  const RenderedImage rendered = render_image(loaded.grid, options);
+  RenderedImage rendered = render_image(loaded.grid, options);
   progress.finish();
   const RenderStats& stats = rendered.stats;
 
@@ -95,11 +98,17 @@ void Render::run() const {
   if (stats.hits == 0)
     warn("no ray met the surface; look at --eye and --target, or leave them out to see all of it");
 
+  std::string legend;
+  if (!picture.show.empty())
+    legend = fmt::format(" R, G, B: {} in false colours, white is {}.", picture.show,
+                         show_channel(rendered.image, picture.show));
+
   const Stopwatch write;
   const Camera camera(options.camera);
-  for (const std::string& output : picture.outputs) write_picture(output, rendered.image, camera);
+  for (const std::string& output : picture.outputs) write_picture(output, rendered.image, camera, legend);
   const double write_ms = write.ms();
 
+  if (common.talks() && !legend.empty()) print(legend.substr(1) + "\n");
   if (common.talks())
     print(fmt::format("wrote {}: {} x {}, {}, {}; trace {:.3g} ms, shade {:.3g} ms, total {}\n",
                       fmt::join(picture.outputs, ", "), options.camera.width, options.camera.height,

@@ -14,6 +14,9 @@ namespace levelray {
 
 namespace {
 
+const std::vector<std::string> counter_names{"steps",   "tests",        "interpolations",
+                                             "samples", "shadow_steps", "shadow_tests"};
+
 // "512x512"
 void parse_size(const std::string& text, CameraSettings& camera) {
   double width = 0, height = 0;
@@ -102,6 +105,11 @@ void PictureOptions::add_look_to(CLI::App& command) {
       ->type_name("LIST")
       ->group(image);
   command
+      .add_option("--show", show,
+                  "Show rays' work in false colours instead of the picture: " + join(counter_names))
+      ->type_name("NAME")
+      ->group(image);
+  command
       .add_option("--intersector", intersector,
                   "How rays meet a cell's surface: " + join(method_names<Intersectors>()))
       ->capture_default_str()
@@ -140,6 +148,10 @@ RenderOptions PictureOptions::resolve_without_grid() const {
       find_name("--aov", name, aov_names());
       if (std::count(options.aovs.begin(), options.aovs.end(), name) == 0) options.aovs.push_back(name);
     }
+  if (!show.empty()) {
+    find_name("--show", show, counter_names);
+    if (std::count(options.aovs.begin(), options.aovs.end(), show) == 0) options.aovs.push_back(show);
+  }
   options.intersector = canonical_intersector(intersector);
   find_name("--intersector", options.intersector, method_names<Intersectors>());
   find_name("--normals", normals, method_names<NormalSchemes>());
@@ -187,6 +199,7 @@ Json PictureOptions::json(const RenderOptions& resolved, int threads) const {
                {"ground", resolved.ground},
                {"samples", resolved.samples},
                {"aov", resolved.aovs},
+               {"show", show},
                {"repeat", resolved.repeat},
                {"threads", threads},
                {"output", outputs}};

@@ -15,6 +15,7 @@ struct PictureOptions {
   bool shadows = false, ground = false;
   int samples = 1, repeat = 1;
   AccelerationOptions acceleration;
+  std::string show; // a counter to show in false colours, or empty
 
   void add_to(CLI::App& command);
   // All but the outputs.
