@@ -111,6 +111,18 @@ void Progress::report(double done) {
   line_is_dirty_ = true;
 }
 
+void Progress::show(const std::string& line) {
+  if (!shown_) return;
+  const std::int64_t now = Clock::now().time_since_epoch().count();
+  std::int64_t due = next_report_;
+  if (now < due || !next_report_.compare_exchange_strong(due, now + 100'000'000)) return;
+  const std::lock_guard lock(mutex_);
+  const std::string text = "\r" + line + "\033[K";
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+  line_is_dirty_ = true;
+}
+
 void Progress::finish() {
   const std::lock_guard lock(mutex_);
   if (line_is_dirty_) std::fputs("\r\033[K", stderr);

@@ -46,6 +46,9 @@ class Progress {
   // Begins a stage of `amount` things called `unit` ("rays"); amount 0: no rate is shown.
   void begin(const std::string& stage, double amount, const std::string& unit);
   void report(double done); // in [0,1]
+  // Shows a line of the caller's instead.
+  void show(const std::string& line);
+  bool shown() const { return shown_; }
   void finish();
 
  private:

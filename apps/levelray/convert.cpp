@@ -4,6 +4,7 @@
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/output_file.hpp"
+#include "mesh_frames.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -17,16 +18,44 @@ struct Convert {
   CommonOptions common;
   InputOptions input;
   ConversionOptions conversion;
+  SequenceOptions sequence;
   std::string output;
   bool half = false;
 
   void run() const;
+
+ private:
+  void run_one(const VdbWriteOptions& options) const;
+  void run_frames(const FramePlan& plan, const VdbWriteOptions& options) const;
 };
 
 void Convert::run() const {
+  const FramePlan plan = plan_frames(sequence, {1}, {input.path}, {output}, {".vdb"});
+  VdbWriteOptions options;
+  options.half = half;
+  options.creator = "levelray " LEVELRAY_VERSION;
   std::vector<std::string> outputs;
-  check_output(output, input.path, {".vdb"}, outputs);
   if (!common.json.empty() && common.json != "-") check_output(common.json, input.path, {}, outputs);
+  if (plan.numbered || sequence.skip_existing)
+    run_frames(plan, options);
+  else
+    run_one(options);
+}
+
+void Convert::run_frames(const FramePlan& plan, const VdbWriteOptions& options) const {
+  conversion.check();
+  parse_unit(input.units);
+  const ThreadLimit threads(common.threads);
+  const MeshFrames source(input, conversion, options);
+  SequenceReport report(common, source.verb(), plan.frames.size());
+  Sequence(plan, sequence, input.memory_limit()).run(source, report);
+  Json all_options = input.json();
+  all_options.update(conversion.json());
+  all_options.update(sequence.json());
+  report.finish({{"options", all_options}});
+}
+
+void Convert::run_one(const VdbWriteOptions& options) const {
   conversion.check();
   const ThreadLimit threads(common.threads);
   const Stopwatch total;
@@ -38,9 +67,6 @@ void Convert::run() const {
                            });
 
   const Stopwatch write;
-  VdbWriteOptions options;
-  options.half = half;
-  options.creator = "levelray " LEVELRAY_VERSION;
   write_file_atomically(output, [&](const std::string& path) { write_vdb(path, loaded.grid, options); });
   const double write_ms = write.ms();
 
@@ -79,6 +105,7 @@ void add_convert(CLI::App& program, Work& run) {
   levelray convert scan.obj scan.vdb --sign winding --json report.json
   levelray convert flag.ply flag.vdb --thicken 1.5vx
   levelray convert fluid_data_0042.vdb liquid.vdb --grid phi
+  levelray convert 'cloth.####.obj' 'cloth.####.vdb' -f 1-100 --skip-existing
 
 Converts a mesh (OBJ, PLY, STL, OFF) to an OpenVDB level set: exact distances within a narrow band. Of a .vdb it takes one
 level set, and makes distances of its values where they are none (--redistance).)");
@@ -89,6 +116,7 @@ level set, and makes distances of its values where they are none (--redistance).
   options->conversion.add_to(command);
   command.add_flag("--half", options->half, "Store 16-bit floats: half the size, values to 11 bits")
       ->group("Conversion");
+  options->sequence.add_to(command);
   options->input.add_to(command);
   options->common.add_to(command);
   command.callback([options, &run] { run = [options] { options->run(); }; });

@@ -1,5 +1,6 @@
 #include "input.hpp"
 
+#include "file_state.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/output_file.hpp"
@@ -58,7 +59,9 @@ LoadedMesh load_mesh(const InputOptions& options, bool sheet) {
   PrepareOptions prepare;
   prepare.trust_orientation = options.trust_orientation;
   prepare.sheet = sheet;
+  const WatchedFile watched(options.path);
   MeshFile file = read_mesh(options.path, options.mesh_options());
+  watched.check();
   try {
     loaded.prepared = prepare_mesh(file.mesh, prepare);
   } catch (const Error& error) { // says what is wrong, but does not know the file's name
@@ -117,7 +120,8 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
   loaded.read_ms = mesh.read_ms;
   if (conversion.redistance != "auto" || !conversion.iso.empty())
     loaded.warnings.push_back("--redistance and --iso are for .vdb files: no effect on a mesh");
-  for (const std::string& warning : loaded.warnings) print_warning(warning);
+  if (!common.keep_warnings)
+    for (const std::string& warning : loaded.warnings) print_warning(warning);
   if (const double thickness = loaded.converted->thickness; common.talks() && thickness > 0)
     print(fmt::format("sheet: {:.4g}{} thick ({:.3g} voxels), half of it on each side of the mesh\n",
                       thickness, input.units.empty() ? "" : " " + input.units,
@@ -133,7 +137,9 @@ LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& convers
                      const CommonOptions& common, Progress& progress) {
   if (!is_vdb(input.path)) return convert_mesh(input, conversion, common, progress);
   const Stopwatch watch;
+  const WatchedFile watched(input.path);
   VdbFile file = read_vdb(input.path, conversion.vdb_options(input));
+  watched.check();
   LoadedGrid loaded;
   loaded.redistanced = file.redistanced;
   loaded.grid = std::move(file.grid);
@@ -142,7 +148,8 @@ LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& convers
   if (conversion.given_for_meshes() || (conversion.band != "3vx" && !loaded.redistanced))
     loaded.warnings.push_back(
         "--resolution, --voxel, --band, --sign and --thicken are for meshes: no effect on a .vdb");
-  for (const std::string& warning : loaded.warnings) print_warning(warning);
+  if (!common.keep_warnings)
+    for (const std::string& warning : loaded.warnings) print_warning(warning);
   if (common.talks())
     print(fmt::format("{}: grid \"{}\", {} active samples, voxel {:.4g}, band {:.3g} voxels\n",
                       printable(input.path, 300), printable(loaded.grid.name, 100),

@@ -11,8 +11,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <exception>
 #include <fmt/format.h>
 #include <new>
+#include <string_view>
 #include <unistd.h>
 
 namespace {
@@ -144,11 +147,26 @@ int run_to_exit_code(int argc, char** argv) {
   }
 }
 
+// Where an exception has no way out, e.g. when there is no memory even to tell about the lack of it.
+[[noreturn]] void on_terminate() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view message = "levelray: out of memory\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
+    remove_temporary_files();
+    ::_exit(static_cast<int>(ErrorKind::limit));
+  } catch (...) {
+  }
+  std::abort();
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
   if (reserve_standard_streams()) set_output_closed();
   handle_signals();
+  std::set_terminate(on_terminate);
   const int code = run_to_exit_code(argc, argv);
   // Workers that are still busy after a signal must not hold up the end.
   if (stop_signal() != 0) {

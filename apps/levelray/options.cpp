@@ -48,6 +48,11 @@ void InputOptions::add_to(CLI::App& command) {
       .add_flag("--trust-input", trust_input,
                 "Read a .vdb in this process instead of a limited one of its own")
       ->group(group);
+  command.add_option("--read-timeout", read_timeout, "Give up reading a .vdb after so many seconds")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str()
+      ->type_name("S")
+      ->group(group);
   command
       .add_option("--max-memory", max_memory,
                   "Refuse work that needs more, e.g. 8GiB (exit 5); 0: no limit; default: 80% of the "
@@ -70,6 +75,7 @@ VdbReadOptions InputOptions::vdb_options() const {
   options.grid = grid;
   options.trust_input = trust_input;
   options.max_memory = memory_limit();
+  options.timeout_seconds = read_timeout;
   return options;
 }
 
@@ -83,6 +89,7 @@ Json InputOptions::json() const {
           {"strict", strict},
           {"grid", grid},
           {"trust_input", trust_input},
+          {"read_timeout", read_timeout},
           {"max_memory", memory_limit()}};
 }
 

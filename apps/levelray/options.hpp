@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json; // keys in the order they are documented
 struct CommonOptions {
   int threads = 0; // 0: all
   bool quiet = false;
-  std::string json; // a path, "-" for standard output, or empty
+  std::string json;           // a path, "-" for standard output, or empty
+  bool keep_warnings = false; // no option: the caller tells the warnings of what it loads
 
   void add_to(CLI::App& command);
   // Results for people go to standard output, unless JSON does or nothing shall.
@@ -30,6 +31,7 @@ struct CommonOptions {
 // How a mesh or a .vdb is read.
 struct InputOptions {
   std::string path, format, units, grid, max_memory;
+  double read_timeout = 60; // seconds, for a .vdb
   bool drop_bad = false, salvage = false, trust_orientation = false, strict = false, trust_input = false;
 
   void add_to(CLI::App& command);

@@ -3,11 +3,9 @@
 #include "input.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
-#include "levelray/io/exr_writer.hpp"
-#include "levelray/io/output_file.hpp"
-#include "levelray/io/png_writer.hpp"
 #include "levelray/render/false_colour.hpp"
-#include "render_options.hpp"
+#include "picture_frames.hpp"
+#include "render_frames.hpp"
 
 #include <fmt/format.h>
 #include <memory>
@@ -16,20 +14,17 @@ namespace levelray {
 
 namespace {
 
-constexpr const char* channel_comments =
-    "R, G, B premultiplied by A, scene-linear. Z: depth along the view axis; t: distance along the ray; P, "
-    "N: world "
-    "position and unit outward normal; steps, tests, interpolations, samples: work done for the ray; "
-    "shadow_steps, shadow_tests: for the rays towards lights, per sample. AOVs are of the pixel's centre, "
-    "unfiltered. Where A is 0: Z = t = 1e30, P = N = 0.";
-
 struct Render {
   CommonOptions common;
   InputOptions input;
   ConversionOptions conversion;
   PictureOptions picture;
+  RenderFramesOptions frames;
 
   void run() const;
+
+ private:
+  void run_one() const;
 };
 
 // {median, min, max} of the repetitions, or their one value.
@@ -52,17 +47,16 @@ double median(std::vector<double> ms) {
   return (ms[(ms.size() - 1) / 2] + ms[ms.size() / 2]) / 2;
 }
 
-void write_picture(const std::string& path, const Image& image, const Camera& camera,
-                   const std::string& legend) {
-  if (extension_of(path) == ".png")
-    write_file_atomically(path, encode_png(image));
-  else
-    write_file_atomically(path, encode_exr(image, {&camera, "levelray " LEVELRAY_VERSION,
-                                                   std::string(channel_comments) + legend}));
-}
-
 void Render::run() const {
   picture.check();
+  const FramePlan plan = frames.plan({input.path}, picture.outputs);
+  if (frames.many(plan))
+    render_frames(plan, common, input, conversion, picture, frames);
+  else
+    run_one();
+}
+
+void Render::run_one() const {
   std::vector<std::string> outputs;
   for (const std::string& output : picture.outputs)
     check_output(output, input.path, {".exr", ".png"}, outputs);
@@ -75,10 +69,7 @@ void Render::run() const {
   const double load_ms = total.ms();
 
   RenderOptions options = picture.resolve(loaded.grid);
-  const std::uint64_t needed = render_bytes(options) + loaded.grid.bytes();
-  if (const std::uint64_t limit = input.memory_limit(); limit > 0 && needed > limit)
-    throw Error(ErrorKind::limit, fmt::format("--size {}: rendering needs {}, --max-memory is {}",
-                                              picture.size, bytes_text(needed), bytes_text(limit)));
+  check_render_memory(picture, options, loaded.grid.bytes(), input.memory_limit());
   const double rays = static_cast<double>(options.camera.width) * options.camera.height * options.samples;
   progress.begin("render", rays * options.repeat, " rays");
   options.progress = [&](double done) { progress.report(done); };
@@ -105,7 +96,8 @@ void Render::run() const {
 
   const Stopwatch write;
   const Camera camera(options.camera);
-  for (const std::string& output : picture.outputs) write_picture(output, rendered.image, camera, legend);
+  for (const std::string& output : picture.outputs)
+    write_picture(output, rendered.image, camera, "", {}, legend);
   const double write_ms = write.ms();
 
   if (common.talks() && !legend.empty()) print(legend.substr(1) + "\n");
@@ -145,14 +137,21 @@ void add_render(CLI::App& program, Work& run) {
   levelray render statue.ply -o statue.exr -o statue.png --size 1920x1080 --shadows --ground
   levelray render statue.vdb -o statue.exr --aov t,P,N --eye 2,1,3 --target 0,0,0 --fov 35
   levelray render statue.vdb -o statue.png --light 1,2,1 --light -2,1,0,0.4 --samples 16
+  levelray render 'cache/liquid.####.vdb' -f 1001-1100 -o 'out/liquid.####.exr' --skip-existing
+  levelray render statue.vdb --turntable 120 -o 'turn/statue.####.png' --movie turn.mp4
 
 Renders a level set, or a mesh that is converted on the fly. Without a camera all of it is framed; without lights
 there are three that go along with the camera. Backgrounds are transparent (alpha 0; Z and t are 1e30 there, other
-AOVs 0).)");
+AOVs 0).
+
+With -f the frame's number replaces ####, %04d or {frame} in paths. All frames have one camera: without --eye and
+--target the first frame of -f that can be read is framed; where parts of a sequence are rendered by themselves,
+name that frame by --camera-frame. A frame that fails is reported and the others go on (exit 4).)");
   command
       .add_option("IN", options->input.path, "A .vdb or a mesh; -: a mesh on standard input (needs --format)")
       ->required();
   options->picture.add_to(command);
+  options->frames.add_to(command);
   options->conversion.add_to(command);
   options->input.add_to(command);
   options->common.add_to(command);

@@ -6,6 +6,7 @@
 #include "levelray/normal/normals.hpp"
 #include "levelray/render/surface_extent.hpp"
 #include "names.hpp"
+#include "turntable.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -162,13 +163,14 @@ RenderOptions PictureOptions::resolve_without_grid() const {
   return options;
 }
 
-RenderOptions PictureOptions::resolve(const BlockGrid& grid) const {
+RenderOptions PictureOptions::resolve(const BlockGrid& grid, bool turning) const {
   RenderOptions options = resolve_without_grid();
   CameraSettings& camera = options.camera;
-  if (eye.empty() || target.empty()) {
+  if (needs_framing()) {
     const Box3d bounds = surface_bounds(grid);
     const SupportFunction support = [&](std::span<const Vec3d> directions) {
-      return surface_support(grid, directions);
+      return turning ? turned_surface_support(grid, camera.up, bounds.center(), directions)
+                     : surface_support(grid, directions);
     };
     const CameraSettings frame =
         bounds.isEmpty()

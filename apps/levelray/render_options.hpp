@@ -22,13 +22,15 @@ struct PictureOptions {
   void add_look_to(CLI::App& command);
   // Throws Error(usage) for everything that can be told without the grid.
   void check() const { resolve_without_grid(); }
-  // With a camera: the given one, completed by framing the grid's surface.
-  RenderOptions resolve(const BlockGrid& grid) const;
+  // All but the camera's place, and lights where none are given.
+  RenderOptions resolve_without_grid() const;
+  // With a camera: the given one, completed by framing the grid's surface. With `turning`, all of it is seen
+  // from everywhere on the camera's way round the surface's middle.
+  RenderOptions resolve(const BlockGrid& grid, bool turning = false) const;
+  // Whether that depends on the grid.
+  bool needs_framing() const { return eye.empty() || target.empty(); }
   // Every option in force.
   Json json(const RenderOptions& resolved, int threads) const;
-
- private:
-  RenderOptions resolve_without_grid() const;
 };
 
 } // namespace levelray

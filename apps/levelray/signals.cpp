@@ -26,7 +26,7 @@ void on_stop(int signal) {
   const int saved_errno = errno;
   request_cancel();
   itimerval timer = {};
-  timer.it_value.tv_usec = 400000;
+  timer.it_value.tv_usec = 250000; // half a second is promised, and a large process takes its time to end
   ::setitimer(ITIMER_REAL, &timer, nullptr);
   errno = saved_errno;
 }

@@ -3,9 +3,9 @@
 
 namespace levelray {
 
-// SIGINT, SIGTERM and SIGHUP ask running work to stop (request_cancel); work that has not stopped 0.4 seconds
-// later, or a second signal, ends the process at once, without temporary files left, with exit code 128 +
-// signal. SIGPIPE and SIGXFSZ become errors of the write that caused them.
+// SIGINT, SIGTERM and SIGHUP ask running work to stop (request_cancel); work that has not stopped 0.25
+// seconds later, or a second signal, ends the process at once, without temporary files left, with exit code
+// 128 + signal. SIGPIPE and SIGXFSZ become errors of the write that caused them.
 void handle_signals();
 
 // The signal that asked to stop, or 0.

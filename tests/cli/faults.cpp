@@ -1,4 +1,5 @@
-// Signals, full disks, closed streams: an exit code that tells, and no half file.
+// Signals, full disks, closed streams: an exit code that tells, and no half file. The faults are numbered as
+// in the fault matrix that this program is held to, 1 to 22; the others are in faults_*.cpp.
 #include "support/catch.hpp"
 #include "support/mesh_files.hpp"
 #include "support/run_program.hpp"
@@ -21,7 +22,7 @@ constexpr double promised_seconds = 0.5;
 
 } // namespace
 
-TEST_CASE("SIGINT and SIGTERM end long work within half a second and leave no file") {
+TEST_CASE("fault 3: SIGINT and SIGTERM end long work within half a second and leave no file") {
   const TemporaryFolder folder;
   write_text(folder / "ball.obj", ball_obj(60));
   const std::vector<std::vector<std::string>> jobs{
@@ -44,7 +45,7 @@ TEST_CASE("SIGINT and SIGTERM end long work within half a second and leave no fi
       }
 }
 
-TEST_CASE("a second SIGINT ends at once") {
+TEST_CASE("fault 3: a second SIGINT ends at once") {
   const TemporaryFolder folder;
   write_text(folder / "ball.obj", ball_obj(60));
   RunOptions options;
@@ -57,7 +58,7 @@ TEST_CASE("a second SIGINT ends at once") {
   CHECK(folder.names() == Names{"ball.obj"});
 }
 
-TEST_CASE("standard output that is full or closed ends with 74") {
+TEST_CASE("fault 18: standard output that is full or closed ends with 74") {
   const TemporaryFolder folder;
   write_text(folder / "box.obj", box_obj(3, 2, 1));
   const std::vector<std::vector<std::string>> jobs{
@@ -82,7 +83,7 @@ TEST_CASE("standard output that is full or closed ends with 74") {
   }
 }
 
-TEST_CASE("a closed standard stream never becomes part of an output") {
+TEST_CASE("fault 18: a closed standard stream never becomes part of an output") {
   const TemporaryFolder folder;
   write_text(folder / "box.obj", box_obj(3, 2, 1));
   RunOptions options;
@@ -96,7 +97,7 @@ TEST_CASE("a closed standard stream never becomes part of an output") {
   CHECK(std::filesystem::file_size(folder / "a.vdb") == std::filesystem::file_size(folder / "b.vdb"));
 }
 
-TEST_CASE("a reader that goes away ends the program quietly") {
+TEST_CASE("fault 4: a reader that goes away ends the program quietly") {
   const TemporaryFolder folder;
   write_text(folder / "box.obj", box_obj(3, 2, 1));
   RunOptions options;
@@ -111,7 +112,7 @@ TEST_CASE("a reader that goes away ends the program quietly") {
   CHECK(result.err.empty());
 }
 
-TEST_CASE("a full disk ends with 74 and leaves the older output") {
+TEST_CASE("fault 5: a file that cannot grow ends with 74 and leaves the older output") {
   const TemporaryFolder folder;
   write_text(folder / "ball.obj", ball_obj(30));
   RunOptions options;
@@ -136,7 +137,7 @@ TEST_CASE("a full disk ends with 74 and leaves the older output") {
   }
 }
 
-TEST_CASE("memory that the system refuses ends with 5") {
+TEST_CASE("fault 10: memory that the system refuses ends with 5") {
   const TemporaryFolder folder;
   write_text(folder / "ball.obj", ball_obj(30));
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

@@ -68,6 +68,7 @@ TEST_CASE("render's JSON has the documented keys, and times of repetitions as me
                                                        "traversal",
                                                        "shadow",
                                                        "occluder_steps",
+                                                       "read_timeout",
                                                        "show"});
   for (const char* rays : {"primary", "shadow"})
     for (const char* count : {"steps", "tests", "interpolations", "samples"})

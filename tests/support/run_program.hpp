@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <functional>
@@ -27,13 +28,16 @@ struct RunResult {
 struct RunOptions {
   std::function<void()> in_child;              // between fork and exec: limits, closed streams
   std::vector<std::pair<double, int>> signals; // (seconds after the start, signal)
+  std::vector<std::string> under;              // a program that runs ours, e.g. {"fiu-run", "-x"}
 };
 
 // Runs LEVELRAY_PROGRAM with these arguments; standard input is empty.
 inline RunResult run_program(const std::vector<std::string>& arguments, const RunOptions& options = {}) {
   int out[2], err[2];
   if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("no pipes");
-  std::vector<char*> argv{const_cast<char*>("levelray")};
+  std::vector<char*> argv;
+  for (const std::string& a : options.under) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(const_cast<char*>(options.under.empty() ? "levelray" : LEVELRAY_PROGRAM));
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
 
@@ -48,7 +52,10 @@ inline RunResult run_program(const std::vector<std::string>& arguments, const Ru
     ::dup2(out[1], 1);
     ::dup2(err[1], 2);
     if (options.in_child) options.in_child();
-    ::execv(LEVELRAY_PROGRAM, argv.data());
+    if (options.under.empty())
+      ::execv(LEVELRAY_PROGRAM, argv.data());
+    else
+      ::execvp(argv[0], argv.data());
     ::_exit(127);
   }
   ::close(out[1]);
@@ -91,6 +98,11 @@ inline RunResult run_program(const std::vector<std::string>& arguments, const Ru
   result.signalled = WIFSIGNALED(status);
   result.code = result.signalled ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
   return result;
+}
+
+// Whether there is a program of that name in PATH.
+inline bool has_tool(const std::string& name) {
+  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
 }
 
 } // namespace levelray::test

@@ -4,11 +4,13 @@
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 using namespace levelray;
@@ -143,4 +145,49 @@ TEST_CASE("temporary files of running writes can be removed from a signal handle
     });
   });
   CHECK(folder.names().empty());
+}
+
+TEST_CASE("what a killed process left of the same file is removed, and nothing else") {
+  const TemporaryFolder folder;
+  const auto leave = [&](const std::string& target) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      write_file_atomically(target, [](const std::string& name) {
+        std::ofstream(name) << "half";
+        ::kill(::getpid(), SIGKILL);
+      });
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    CHECK(WIFSIGNALED(status));
+    return child;
+  };
+  const pid_t dead = leave(folder / "out.bin");
+  leave(folder / "other.bin");
+  REQUIRE(folder.names().size() == 2);
+  const std::string left = folder.names()[1]; // ".other..." sorts before ".out..."
+  CHECK_THAT(left, Catch::StartsWith(".out.bin.") && Catch::Contains("." + std::to_string(dead) + "."));
+
+  // Names that are alike: of a living process, of another machine, of a longer target, of somebody else.
+  char host[256] = {};
+  ::gethostname(host, sizeof host - 1);
+  const std::string mine = std::string(host).substr(0, 40), pid = std::to_string(dead);
+  const std::vector<std::string> innocent{".out.bin." + mine + "." + std::to_string(::getpid()) +
+                                              ".01234567.tmp",
+                                          ".out.bin.elsewhere." + pid + ".01234567.tmp",
+                                          ".out.bin.old." + mine + "." + pid + ".01234567.tmp",
+                                          ".out.bin." + mine + "." + pid + ".notes.tmp",
+                                          ".out.bin." + mine + "." + pid + ".01234567.tmp.txt",
+                                          ".out.bin.tmp"};
+  for (const std::string& name : innocent) std::ofstream(folder / name) << "keep";
+  write_file_atomically(folder / "out.bin", "whole");
+
+  const std::vector<std::string> names = folder.names();
+  const auto there = [&](const std::string& name) {
+    return std::count(names.begin(), names.end(), name) == 1;
+  };
+  CHECK_FALSE(there(left));
+  CHECK(there("out.bin"));
+  for (const std::string& name : innocent) CHECK(there(name));
+  CHECK(names.size() == innocent.size() + 2); // and .other.bin's, whose turn has not come
 }

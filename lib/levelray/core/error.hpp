@@ -14,6 +14,7 @@ enum class ErrorKind : int {
   failed = 1,       // work that could not be done, no fault of the input
   usage = 2,        // an option, a name or a combination that is not legal
   bad_input = 3,    // a file that cannot be used
+  some_frames = 4,  // some frames of a sequence could not be made; the others are there
   limit = 5,        // memory, time or size limits
   mismatch = 6,     // what was compared differs by more than was allowed
   cannot_write = 74 // the output could not be written

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -17,6 +18,22 @@ namespace {
 
 std::atomic<bool> g_cancel{false};
 static_assert(std::atomic<bool>::is_always_lock_free); // so that signal handlers may set it
+
+using Clock = std::chrono::steady_clock;
+constexpr Clock::time_point never = Clock::time_point::max();
+thread_local Clock::time_point t_end = never;
+
+// A loop's chunk in some worker has the time limit of the thread that began the loop.
+class InheritedLimit {
+ public:
+  explicit InheritedLimit(Clock::time_point end) : own_(t_end) { t_end = end; }
+  ~InheritedLimit() { t_end = own_; }
+  InheritedLimit(const InheritedLimit&) = delete;
+  InheritedLimit& operator=(const InheritedLimit&) = delete;
+
+ private:
+  Clock::time_point own_;
+};
 
 // What TBB's queues guarantee, told to the thread sanitizer, which does not see into libtbb: all before a
 // publish(tag) happens before all after an observe(tag). In its builds this file alone is not instrumented
@@ -42,12 +59,14 @@ void parallel_for(std::size_t count, std::size_t grain,
   grain = std::max<std::size_t>(grain, 1);
   const std::size_t chunks = (count + grain - 1) / grain;
   char begun = 0, done = 0;
+  const Clock::time_point end = t_end;
   publish(begun);
   const auto loop = [&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, chunks, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
           observe(begun);
+          const InheritedLimit limit(end);
           for (std::size_t chunk = range.begin(); chunk != range.end(); ++chunk) {
             check_cancel();
             body(chunk * grain, std::min(count, (chunk + 1) * grain));
@@ -92,6 +111,20 @@ bool cancel_requested() noexcept {
 }
 void check_cancel() {
   if (cancel_requested()) throw Cancelled();
+  if (t_end != never && Clock::now() > t_end) throw TimeUp();
+}
+
+TimeLimit::TimeLimit(double seconds) : end_(never) {
+  if (seconds > 0 && seconds < 1e9)
+    end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  t_end = end_;
+}
+TimeLimit::~TimeLimit() {
+  t_end = never;
+}
+double TimeLimit::left() const {
+  if (end_ == never) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, std::chrono::duration<double>(end_ - Clock::now()).count());
 }
 
 } // namespace levelray

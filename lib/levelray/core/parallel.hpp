@@ -4,7 +4,9 @@
 // loop whose chunks write to places of their own gives the same bytes on any machine.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <memory>
 
@@ -39,7 +41,28 @@ const char* tbb_version();
 // `check_cancel()`.
 void request_cancel() noexcept;
 bool cancel_requested() noexcept;
-// Throws Cancelled when a stop was asked for.
+// Throws Cancelled when a stop was asked for, TimeUp when the thread's TimeLimit is over.
 void check_cancel();
+
+// What work throws that a TimeLimit ended.
+class TimeUp : public std::exception {
+ public:
+  const char* what() const noexcept override { return "took longer than its time limit"; }
+};
+
+// Limits the time of the work that this thread does while it lives, and of the parallel loops that it starts:
+// they throw TimeUp where they would notice a cancellation. Does not nest; ends in the thread that made it.
+class TimeLimit {
+ public:
+  explicit TimeLimit(double seconds); // 0: none
+  ~TimeLimit();
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+
+  double left() const; // seconds, at least 0; infinite without a limit
+
+ private:
+  std::chrono::steady_clock::time_point end_;
+};
 
 } // namespace levelray

@@ -1,11 +1,13 @@
 #include "levelray/io/exr_writer.hpp"
 
 #include "levelray/core/error.hpp"
+#include "levelray/io/scene_stamp.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
@@ -66,6 +68,11 @@ Imf::Header make_header(const Image& image, const ExrOptions& options) {
   }
   if (!options.software.empty()) header.insert("software", Imf::StringAttribute(options.software));
   if (!options.comments.empty()) Imf::addComments(header, options.comments);
+  if (options.frame) header.insert("levelray:frame", Imf::IntAttribute(*options.frame));
+  if (!options.scene_hash.empty()) {
+    header.insert(scene_hash_name, Imf::StringAttribute(options.scene_hash));
+    header.insert(content_name, Imf::StringAttribute(std::string(content_length, '0')));
+  }
   return header;
 }
 
@@ -104,7 +111,9 @@ std::string encode_exr(const Image& image, const ExrOptions& options) {
       file.setFrameBuffer(frame_buffer);
       file.writePixels(image.height);
     } // the line offset table is written at the end
-    return stream.take();
+    std::string bytes = stream.take();
+    if (!options.scene_hash.empty()) seal_exr(bytes);
+    return bytes;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

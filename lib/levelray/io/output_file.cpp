@@ -5,14 +5,19 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
+#include <map>
+#include <mutex>
 #include <random>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <vector>
 
 namespace levelray {
 
@@ -40,16 +45,42 @@ struct Slot {
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
 std::array<Slot, 16> g_slots;
 
+// The middle of temporary names: what processes on other machines that share the folder differ by.
+std::string host_name() {
+  char name[41] = {}; // cut: what matters is that it is always the same here
+  ::gethostname(name, sizeof name - 1);
+  std::string host(name, ::strnlen(name, sizeof name));
+  for (char& c : host)
+    if (c == '/') c = '_';
+  return host.empty() ? "localhost" : host;
+}
+
+// ".name.host." of a target; a name that is cut stays below NAME_MAX together with its decoration.
+std::string temporary_prefix(const std::string& name) {
+  static const std::string host = host_name();
+  return "." + name.substr(0, 180) + "." + host + ".";
+}
+
+// The process that a temporary name ends with: "PID.XXXXXXXX.tmp"; 0 when it does not.
+pid_t process_of(std::string_view end) {
+  const std::size_t dot = end.find('.');
+  if (dot == 0 || dot > 9 || end.size() != dot + 13 || !end.ends_with(".tmp")) return 0;
+  pid_t process = 0;
+  const auto [stop, error] = std::from_chars(end.data(), end.data() + dot, process);
+  const bool hex = end.substr(dot + 1, 8).find_first_not_of("0123456789abcdef") == std::string_view::npos;
+  return error == std::errc() && stop == end.data() + dot && hex ? process : 0;
+}
+
 // A registered temporary file, removed unless released.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& target, const std::string& shown) {
     const fs::path folder = fs::path(target).parent_path();
-    const std::string name = fs::path(target).filename().string();
+    const std::string prefix = temporary_prefix(fs::path(target).filename().string());
+    remove_stale_temporary_files(target);
     std::random_device random;
     for (int attempt = 0; attempt < 100; ++attempt) {
-      // A name that is cut stays below NAME_MAX together with its decoration.
-      path_ = (folder / fmt::format(".{}.{}.{:08x}.tmp", name.substr(0, 200), ::getpid(), random())).string();
+      path_ = (folder / fmt::format("{}{}.{:08x}.tmp", prefix, ::getpid(), random())).string();
       if (path_.size() >= PATH_MAX) fail_errno(shown, ENAMETOOLONG);
       take_slot();
       const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -191,6 +222,30 @@ void check_writable(const std::string& path) {
   const std::string target = follow_link(path);
   if (is_device(target, path)) return;
   const TemporaryFile probe(target, path); // the only test that knows about quotas and read-only mounts
+}
+
+void remove_stale_temporary_files(const std::string& path) {
+  // What is left over in a folder is looked up once: folders of sequences are long.
+  static std::mutex mutex;
+  static std::map<std::string, std::vector<std::string>> left_over;
+  const std::lock_guard lock(mutex);
+  const std::string folder = folder_of(path);
+  const auto [place, is_new] = left_over.try_emplace(folder);
+  std::vector<std::string>& names = place->second;
+  std::error_code error;
+  if (is_new)
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+      if (std::string name = entry->path().filename().string();
+          name.starts_with('.') && name.ends_with(".tmp"))
+        names.push_back(std::move(name));
+
+  const std::string prefix = temporary_prefix(fs::path(path).filename().string());
+  for (std::string& name : names) {
+    const pid_t process =
+        name.starts_with(prefix) ? process_of(std::string_view(name).substr(prefix.size())) : 0;
+    if (process > 0 && ::kill(process, 0) != 0 && errno == ESRCH)
+      fs::remove(fs::path(folder) / name, error); // somebody else may have been faster
+  }
 }
 
 void remove_temporary_files() noexcept {

@@ -1,4 +1,5 @@
-// Outputs that are whole or absent: written beside the target under a temporary name, synced, renamed.
+// Outputs that are whole or absent: written beside the target under a temporary name, synced, renamed. The
+// name is ".TARGET.HOST.PID.RANDOM.tmp".
 #pragma once
 
 #include <functional>
@@ -21,6 +22,10 @@ void write_file_atomically(const std::string& path, std::string_view content);
 
 // Throws Error(cannot_write) when a file could not be created beside `path`: asked before long work.
 void check_writable(const std::string& path);
+
+// Removes what processes of this machine that are no more (kill -9) left of writing `path`. Done whenever a
+// write begins; a folder's left-overs are those it has when this process first comes to it.
+void remove_stale_temporary_files(const std::string& path);
 
 // Removes the temporary files of running writes; async-signal-safe, for handlers of signals that end the
 // program at once.

@@ -1,6 +1,7 @@
 #include "levelray/io/png_writer.hpp"
 
 #include "levelray/core/error.hpp"
+#include "levelray/io/scene_stamp.hpp"
 
 #include <cmath>
 #include <png.h>
@@ -15,7 +16,7 @@ std::uint8_t srgb_byte(float linear) {
   return static_cast<std::uint8_t>(encoded * 255 + 0.5);
 }
 
-std::string encode_png(const Image& image) {
+std::string encode_png(const Image& image, const std::string& scene_hash) {
   const std::vector<float>* rgba[4] = {image.find("R"), image.find("G"), image.find("B"), image.find("A")};
   for (const auto* channel : rgba)
     if (!channel) throw Error(ErrorKind::failed, "PNG: the image lacks one of the channels R, G, B, A");
@@ -43,6 +44,7 @@ std::string encode_png(const Image& image) {
   png_image_free(&png);
   if (!written) throw Error(ErrorKind::failed, "PNG: " + reason);
   bytes.resize(size);
+  if (!scene_hash.empty()) stamp_png(bytes, scene_hash);
   return bytes;
 }
 

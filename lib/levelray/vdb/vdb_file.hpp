@@ -14,6 +14,7 @@ namespace levelray {
 struct VdbWriteOptions {
   bool half = false; // store 16-bit floats
   std::string creator = "levelray";
+  std::string scene_hash; // file metadata "levelray:scene_hash" (io/scene_stamp.hpp); empty: none
 };
 
 // Writes `grid` as an OpenVDB level set to `path` itself (use write_file_atomically around it). The bytes

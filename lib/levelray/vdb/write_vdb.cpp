@@ -1,5 +1,5 @@
+#include "levelray/core/content_hash.hpp"
 #include "levelray/core/error.hpp"
-#include "levelray/vdb/content_id.hpp"
 #include "levelray/vdb/to_openvdb.hpp"
 #include "levelray/vdb/vdb_file.hpp"
 
@@ -20,8 +20,9 @@ namespace {
 class Writer : public openvdb::io::Archive {
  public:
   Writer() { setCompression(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK); }
-  void write_to(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid) const {
-    Archive::write(stream, openvdb::GridCPtrVec{grid}, /*seekable=*/true);
+  void write_to(std::ostream& stream, const openvdb::GridBase::ConstPtr& grid,
+                const openvdb::MetaMap& metadata) const {
+    Archive::write(stream, openvdb::GridCPtrVec{grid}, /*seekable=*/true, metadata);
   }
 };
 
@@ -81,7 +82,10 @@ void write_vdb(const std::string& path, const BlockGrid& grid, const VdbWriteOpt
   try {
     std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary | std::ios::trunc);
     file.exceptions(std::ios::badbit | std::ios::failbit);
-    Writer().write_to(file, out);
+    openvdb::MetaMap metadata;
+    if (!options.scene_hash.empty())
+      metadata.insertMeta("levelray:scene_hash", openvdb::StringMetadata(options.scene_hash));
+    Writer().write_to(file, out, metadata);
     file.flush();
     set_content_uuid(file);
   } catch (const std::ios::failure&) {

@@ -1,4 +1,4 @@
-#include "levelray/vdb/content_id.hpp"
+#include "levelray/core/content_hash.hpp"
 
 #include <bit>
 #include <cstring>
