@@ -13,6 +13,8 @@ void add_convert(CLI::App& program, Work& run);
 void add_render(CLI::App& program, Work& run);
 void add_info(CLI::App& program, Work& run);
 void add_compare(CLI::App& program, Work& run);
+// `farmed`: the command line behind "--".
+void add_farm(CLI::App& program, Work& run, const std::vector<std::string>& farmed);
 void add_scene(CLI::App& program, Work& run);
 
 } // namespace levelray

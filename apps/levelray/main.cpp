@@ -98,7 +98,18 @@ void check_subcommand(const CLI::App& program, int argc, char** argv) {
   }
 }
 
+// The command line behind "--" that `farm` puts into scripts; taken off, because CLI11 would read it as its
+// own.
+std::vector<std::string> take_farmed_command(int& argc, char** argv) {
+  if (argc < 2 || std::string_view(argv[1]) != "farm") return {};
+  char** const end = argv + argc;
+  char** const dashes = std::find(argv, end, std::string_view("--"));
+  argc = static_cast<int>(dashes - argv);
+  return dashes == end ? std::vector<std::string>() : std::vector<std::string>(dashes + 1, end);
+}
+
 void run(int argc, char** argv) {
+  const std::vector<std::string> farmed = take_farmed_command(argc, argv);
   CLI::App program("", "levelray");
   program.footer(examples);
   Work work;
@@ -106,6 +117,7 @@ void run(int argc, char** argv) {
   add_render(program, work);
   add_info(program, work);
   add_compare(program, work);
+  add_farm(program, work, farmed);
   add_scene(program, work);
   program.require_subcommand(1);
   program.set_version_flag("--version", version_text);
