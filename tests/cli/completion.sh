@@ -21,6 +21,8 @@ expect convert ""
 expect render r
 expect info in
 expect compare co
+expect farm fa
+expect --chunk farm slurm --c
 expect --hardfail compare a.exr b.exr --h
 expect --resolution convert --res
 expect --sign convert in.obj out.vdb --

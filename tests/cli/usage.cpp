@@ -93,8 +93,13 @@ TEST_CASE("wrong usage ends with 2 and one line that says what is legal") {
 }
 
 TEST_CASE("help begins with examples, on standard output") {
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {"--help"}, {"convert", "--help"}, {"render", "--help"}, {"info", "-h"}, {"compare", "--help"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--help"},
+                                             {"convert", "--help"},
+                                             {"render", "--help"},
+                                             {"info", "-h"},
+                                             {"compare", "--help"},
+                                             {"farm", "--help"}}) {
     const RunResult result = run_program(arguments);
     CHECK(result.code == 0);
     CHECK(result.err.empty());

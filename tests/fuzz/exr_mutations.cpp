@@ -1,6 +1,7 @@
 // Damaged OpenEXR files through the limited reader: whatever happens there, the parent gets a sound picture
 // or one line. And damaged answers of a reader that was taken over.
 #include "levelray/core/error.hpp"
+#include "levelray/io/exr_header.hpp"
 #include "levelray/io/exr_reader.hpp"
 #include "levelray/io/exr_writer.hpp"
 #include "support/catch.hpp"
@@ -89,6 +90,35 @@ std::string mutate(std::string bytes, Random& random) {
 }
 
 } // namespace
+
+TEST_CASE("100000 damaged OpenEXR headers announce what their file can hold, or are refused") {
+  const TemporaryFolder dir;
+  const std::vector<std::string> files = seeds(dir);
+  constexpr std::uint64_t seed = 20263;
+  Random random(seed);
+  int sound = 0, refused = 0;
+  for (int round = 0; round < 100000; ++round) {
+    CAPTURE(seed, round);
+    const std::string bytes = mutate(files[static_cast<std::size_t>(round) % files.size()], random);
+    try {
+      for (const ExrPart& part : read_exr_headers(bytes, "x.exr")) {
+        const std::int64_t width = width_of(part.data_window), height = height_of(part.data_window);
+        REQUIRE((width >= 1 && width <= exr_max_side && height >= 1 && height <= exr_max_side));
+        REQUIRE((!part.channels.empty() && part.channels.size() <= exr_max_channels));
+        REQUIRE(part.chunks * 16 <= bytes.size());
+        REQUIRE((part.deep || static_cast<std::uint64_t>(width * height) * part.bytes_per_pixel <=
+                                  (bytes.size() + 1) * exr_max_unpacking));
+      }
+      ++sound;
+    } catch (const Error& error) {
+      REQUIRE(error.kind() == ErrorKind::bad_input);
+      REQUIRE(std::string(error.what()).rfind("x.exr: ", 0) == 0);
+      ++refused;
+    }
+  }
+  CHECK(sound > 1000);
+  CHECK(refused > 1000);
+}
 
 TEST_CASE("2000 damaged OpenEXR files give a sound picture or one line, and nothing else") {
   const TemporaryFolder dir;
