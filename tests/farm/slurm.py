@@ -3,13 +3,14 @@
 
 Usage: slurm.py PROGRAM     exit code 77: skipped, because Slurm is not installed or does not start here.
 
-Two nodes run an array of tasks. Then the second node is lost: its slurmd is killed, and one of its renders with it; the
-others run on as orphans while Slurm starts their tasks again, so frames are rendered twice, even at the same time. In the end
-the frames must be those of one unbroken run, byte for byte.
+Two nodes run an array of tasks. Then the second node is lost: its slurmd is killed, and one of its two renders with it. The other
+runs on as an orphan when Slurm has started its task again, as it does behind a broken network, so that frames are rendered
+twice, at the same time. In the end the frames must be those of one unbroken run, byte for byte.
 """
 
 import filecmp
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -60,15 +61,29 @@ def size_for(program, folder, seconds):
     return f"{round(256 * scale)}x{round(192 * scale)}"
 
 
-def lose_node(cluster, name, job):
-    """Kills the node's daemon and one of its two renders, and tells the controller."""
-    running = [t for t in cluster.jobs(job) if t["JobState"] == "RUNNING" and t.get("NodeList") == name]
-    victims = [p for p in cluster.processes() if environment(p).get("SLURMD_NODENAME") == name and program_of(p) == "levelray"]
+def lose_node(cluster, name):
+    """Kills the node's daemon and all but one of its renders, stops that one, and tells the controller. Returns it, or
+    None when nothing is rendered there now."""
+    renders = [p for p in cluster.processes()
+               if environment(p).get("SLURMD_NODENAME") == name and program_of(p) == "levelray"]
+    if not renders:
+        return None
+    os.kill(renders[0], signal.SIGSTOP)
     cluster.kill_daemon(name)
-    if len(victims) > 1:
-        os.kill(victims[0], signal.SIGKILL)
+    for process in renders[1:]:
+        os.kill(process, signal.SIGKILL)
     cluster.run("scontrol", "update", f"nodename={name}", "state=down", "reason=lost")
-    return [t["ArrayTaskId"] for t in running]
+    return renders[0]
+
+
+def frames_written_twice(folder):
+    """By what the tasks said; an orphan and its successor share a file."""
+    written = []
+    for name in os.listdir(folder):
+        if name.startswith("slurm-"):
+            with open(os.path.join(folder, name), errors="replace") as file:
+                written += re.findall(r"^frame (\d+): wrote", file.read(), re.M)
+    return sorted({int(frame) for frame in written if written.count(frame) > 1})
 
 
 def environment(process):
@@ -110,15 +125,20 @@ def test(program, cluster, folder):
              folder=folder)
     job = cluster.run("sbatch", "--parsable", f"--chdir={folder}", os.path.join(folder, "job.sh")).strip()
 
-    lost = []
+    lost, orphan = [], None
     begin = time.monotonic()
     while True:
         tasks = cluster.jobs(job)
         if not lost:
-            here = [t for t in tasks if t["JobState"] == "RUNNING" and t.get("NodeList") == "n2"]
+            here = [t["ArrayTaskId"] for t in tasks if t["JobState"] == "RUNNING" and t.get("NodeList") == "n2"]
             if here and os.listdir(os.path.join(folder, os.path.dirname(OUTPUT))):
-                lost = lose_node(cluster, "n2", job)
+                orphan = lose_node(cluster, "n2")
+                lost = here if orphan else []
         start_requeued_now(cluster, job)
+        if orphan and all(any(t["ArrayTaskId"] == task and t["JobState"] in ("RUNNING", "COMPLETED") and int(t["Restarts"]) > 0
+                              for t in tasks) for task in lost):
+            os.kill(orphan, signal.SIGCONT)
+            orphan = None
         states = [task["JobState"] for task in tasks]
         check(all(state in ("PENDING", "CONFIGURING", "RUNNING", "COMPLETING", "COMPLETED") for state in states),
               f"a task failed: {states}")
@@ -133,6 +153,8 @@ def test(program, cluster, folder):
     restarted = sorted(t["ArrayTaskId"] for t in tasks if int(t["Restarts"]) > 0)
     check(lost, "the node was not lost in the middle of the job")
     check(restarted, f"tasks {lost} ran on the lost node, none was started again")
+    twice = frames_written_twice(folder)
+    check(twice, "no frame was rendered twice")
     outputs = sorted(os.listdir(os.path.join(folder, os.path.dirname(OUTPUT))))
     names = [os.path.basename(output_of(frame)) for frame in range(1, FRAMES + 1)]
     others = [name for name in outputs if name not in names]
@@ -144,7 +166,7 @@ def test(program, cluster, folder):
         check(filecmp.cmp(rendered, os.path.join(expected, name), shallow=False), f"{name} differs from an unbroken run's")
     levelray(program, "compare", output_of(FRAMES), os.path.join("expected", names[-1]), folder=folder)
     print(f"{FRAMES} frames of {size} pixels, {len(tasks)} tasks; lost with the node: {', '.join(lost)}; started again: "
-          f"{', '.join(restarted)}; all identical to an unbroken run, {time.monotonic() - begin:.0f} s")
+          f"{', '.join(restarted)}; frames written twice: {', '.join(map(str, twice))}; all identical to an unbroken run, {time.monotonic() - begin:.0f} s")
 
 
 def main(arguments):
@@ -155,7 +177,7 @@ def main(arguments):
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     folder = tempfile.mkdtemp(prefix="levelray farm ")
     try:
-        with Cluster(["n1", "n2"], cpus=2) as cluster:
+        with Cluster({"n1": FRAMES // CHUNK, "n2": 2}) as cluster:
             try:
                 test(os.path.abspath(arguments[1]), cluster, folder)
             except Exception:

@@ -61,9 +61,9 @@ def free_ports(count):
 
 
 class Cluster:
-    """with Cluster(["n1", "n2"], cpus=2) as cluster: ..."""
+    """with Cluster({"n1": 8, "n2": 2}) as cluster: ...  CPUs of each node (as Slurm counts them); the last is filled first."""
 
-    def __init__(self, nodes, cpus):
+    def __init__(self, nodes):
         os.environ["PATH"] += ":/usr/sbin:/sbin"
         missing = [tool for tool in TOOLS if not shutil.which(tool)]
         if missing:
@@ -80,9 +80,9 @@ class Cluster:
         with open(self.configuration, "w") as file:
             file.write(CONFIGURATION.format(folder=self.folder, host=socket.gethostname(), user=getpass.getuser(),
                                             controller_port=ports[0]))
-            for node, port in zip(nodes, ports[1:]):
+            for weight, (node, port) in enumerate(zip(nodes, ports[1:])):
                 file.write(f"NodeName={node} NodeHostname={socket.gethostname()} NodeAddr=127.0.0.1 Port={port} "
-                           f"CPUs={cpus} State=UNKNOWN\n")
+                           f"CPUs={nodes[node]} Weight={len(nodes) - weight} State=UNKNOWN\n")
         try:
             self.start("slurmctld", ["slurmctld", "-D", "-c", "-f", self.configuration])
             for node in nodes:
