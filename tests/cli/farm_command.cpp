@@ -187,14 +187,13 @@ TEST_CASE("the command of the OpenCue job is one that render takes") {
   std::string command = job.substr(begin + 5, end - begin - 5);
   const TemporaryFolder folder;
   write_text(folder / "box.obj", box_obj(3, 2, 1));
-  REQUIRE(run_program({"scene", "init", folder / "box.obj", "-o", folder / "shot.json"}).code == 0);
   const auto put = [&](const std::string& from, const std::string& to) {
     const std::size_t at = command.find(from);
     REQUIRE(at != std::string::npos);
     command.replace(at, from.size(), to);
   };
   put("levelray ", LEVELRAY_PROGRAM " ");
-  put("/shows/testing/shot.json", folder / "shot.json --size 32x24 -o " + (folder / "out.####.exr"));
+  put("/shows/testing/shot.json", folder / "box.obj --size 32x24 -o " + (folder / "out.####.exr"));
   put("#FRAME_START#", "11");
   put("#FRAME_END#", "13");
   CHECK(shell(command + " 2>&1").second == 0);
