@@ -140,6 +140,8 @@ class HeaderReader {
       ExrPart::Channel channel;
       channel.name = data.substr(at, end - at);
       if (channel.name.size() > longest_name_ || data.size() - end - 1 < 16) damaged();
+      if (printable(channel.name, 300) != channel.name)
+        fail(fmt::format("channel \"{}\": its name is no text", printable(channel.name, 60)));
       const char* numbers = data.data() + end + 1;
       const auto type = load<std::int32_t>(numbers, false);
       if (type < 0 || type > 2)
