@@ -72,7 +72,7 @@ TEST_CASE("a stamped file that is cut, longer or changed in any byte is not trus
       write_text(path, bytes);
       if (distrust(path, mine).empty()) trusted += " changed at " + std::to_string(at);
     }
-    for (const std::string more : {std::string(1, '\0'), whole}) {
+    for (const std::string& more : {std::string(1, '\0'), whole}) {
       write_text(path, whole + more);
       if (distrust(path, mine).empty()) trusted += " longer";
     }
