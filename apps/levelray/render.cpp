@@ -3,9 +3,11 @@
 #include "input.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/io/scene_file.hpp"
 #include "levelray/render/false_colour.hpp"
 #include "picture_frames.hpp"
 #include "render_frames.hpp"
+#include "render_scene.hpp"
 
 #include <fmt/format.h>
 #include <memory>
@@ -20,8 +22,9 @@ struct Render {
   ConversionOptions conversion;
   PictureOptions picture;
   RenderFramesOptions frames;
+  std::vector<std::string> overrides;
 
-  void run() const;
+  void run(const CLI::App& command) const;
 
  private:
   void run_one() const;
@@ -47,7 +50,10 @@ double median(std::vector<double> ms) {
   return (ms[(ms.size() - 1) / 2] + ms[ms.size() / 2]) / 2;
 }
 
-void Render::run() const {
+void Render::run(const CLI::App& command) const {
+  if (is_scene(input.path)) return render_scene(command, overrides, common, input, picture, frames);
+  if (!overrides.empty()) throw Error(ErrorKind::usage, "--set is for scenes, and this input is none");
+  if (picture.outputs.empty()) throw Error(ErrorKind::usage, "--output is required; e.g. -o picture.png");
   picture.check();
   const FramePlan plan = frames.plan({input.path}, picture.outputs);
   if (frames.many(plan))
@@ -139,8 +145,9 @@ void add_render(CLI::App& program, Work& run) {
   levelray render statue.vdb -o statue.png --light 1,2,1 --light -2,1,0,0.4 --samples 16
   levelray render 'cache/liquid.####.vdb' -f 1001-1100 -o 'out/liquid.####.exr' --skip-existing
   levelray render statue.vdb --turntable 120 -o 'turn/statue.####.png' --movie turn.mp4
+  levelray render shot.json -f 1001-1100 -o 'out/shot.####.exr' --set film.samples=4
 
-Renders a level set, or a mesh that is converted on the fly. Without a camera all of it is framed; without lights
+Renders a level set, a mesh that is converted on the fly, or a scene ("levelray scene init" starts one). Without a camera all of it is framed; without lights
 there are three that go along with the camera. Backgrounds are transparent (alpha 0; Z and t are 1e30 there, other
 AOVs 0).
 
@@ -148,14 +155,21 @@ With -f the frame's number replaces ####, %04d or {frame} in paths. All frames h
 --target the first frame of -f that can be read is framed; where parts of a sequence are rendered by themselves,
 name that frame by --camera-frame. A frame that fails is reported and the others go on (exit 4).)");
   command
-      .add_option("IN", options->input.path, "A .vdb or a mesh; -: a mesh on standard input (needs --format)")
+      .add_option("IN", options->input.path,
+                  "A .vdb, a mesh, or a scene (.json); -: a mesh on standard input (needs --format)")
       ->required();
+  command
+      .add_option(
+          "--set", options->overrides,
+          "Change a scene's value, e.g. film.samples=4 or objects.dragon.material.ior=1.3; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
   options->picture.add_to(command);
   options->frames.add_to(command);
   options->conversion.add_to(command);
   options->input.add_to(command);
   options->common.add_to(command);
-  command.callback([options, &run] { run = [options] { options->run(); }; });
+  command.callback([options, &run, &command] { run = [options, &command] { options->run(command); }; });
 }
 
 } // namespace levelray

@@ -60,7 +60,6 @@ Json vector_json(const Vec3d& v) {
 
 void PictureOptions::add_to(CLI::App& command) {
   command.add_option("--output,-o", outputs, "An .exr or .png to write; may be repeated")
-      ->required()
       ->allow_extra_args(false)
       ->type_name("FILE");
   add_look_to(command);

@@ -3,11 +3,14 @@
 #include "input.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/io/frame_list.hpp"
+#include "levelray/io/frame_pattern.hpp"
 #include "levelray/io/output_file.hpp"
 #include "levelray/io/scene_frame.hpp"
 #include "names.hpp"
 #include "starting_scene.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
@@ -20,7 +23,7 @@ struct SceneCommand {
   InputOptions input;
   ConversionOptions conversion;
   PictureOptions picture;
-  std::string action, output;
+  std::string action, output, frames;
   std::vector<std::string> files;
 
   void run();
@@ -47,9 +50,16 @@ void SceneCommand::init() const {
   check_output(output, input.path, {".json"}, outputs);
   const ThreadLimit threads(common.threads);
   Progress progress(common.quiet);
-  const LoadedGrid loaded = load_grid(input, conversion, common, progress);
+  InputOptions first = input;
+  const FramePattern pattern(input.path);
+  std::error_code ignored;
+  if (frames.empty() && pattern.has_frame() && !std::filesystem::exists(input.path, ignored))
+    throw Error(ErrorKind::usage,
+                printable(input.path, 250) + ": a place for frames needs -f, e.g. -f 1-100");
+  if (!frames.empty()) first.path = pattern.path(parse_frames("--frames", frames).front());
+  const LoadedGrid loaded = load_grid(first, conversion, common, progress);
   const RenderOptions options = picture.resolve(loaded.grid);
-  const SceneFile scene = starting_scene(output, input, conversion, loaded.grid, options);
+  const SceneFile scene = starting_scene(output, input, conversion, frames, loaded.grid, options);
   write_file_atomically(output, json_text(short_scene_json(scene)) + "\n");
   if (common.talks())
     print(fmt::format("wrote {0}: a scene of {1}; levelray render {0}\n", printable(output, 200),
@@ -98,6 +108,10 @@ it.)");
   command.add_option("ACTION", options->action, "init or check")->required();
   command.add_option("IN", options->files, "init: a .vdb or a mesh; check: scenes")->required();
   command.add_option("--output,-o", options->output, "The .json to write")->type_name("FILE");
+  command
+      .add_option("--frames,-f", options->frames,
+                  "Frames of an input with #### in its name; the camera goes by the first")
+      ->type_name("LIST");
   options->picture.add_look_to(command);
   options->conversion.add_to(command);
   options->input.add_to(command);

@@ -46,8 +46,8 @@ MaterialFile material_file(const Material& material) {
 } // namespace
 
 SceneFile starting_scene(const std::string& path, const InputOptions& input,
-                         const ConversionOptions& conversion, const BlockGrid& grid,
-                         const RenderOptions& picture) {
+                         const ConversionOptions& conversion, const std::string& frames,
+                         const BlockGrid& grid, const RenderOptions& picture) {
   const Scene scene = one_grid_scene(grid, picture);
   SceneFile file;
   file.path = path;
@@ -64,6 +64,7 @@ SceneFile starting_scene(const std::string& path, const InputOptions& input,
   if (is_vdb(input.path)) {
     object.level_set = from_scene(path, input.path);
     object.grid = input.grid;
+    object.redistance = conversion.redistance;
   } else {
     object.mesh = from_scene(path, input.path);
     ConvertFile& convert = object.convert.emplace();
@@ -71,6 +72,7 @@ SceneFile starting_scene(const std::string& path, const InputOptions& input,
     if (!conversion.voxel.empty()) convert.voxel = conversion.voxel;
     convert.band = conversion.band;
     convert.sign = conversion.sign;
+    if (!conversion.thicken.empty()) convert.thicken = conversion.thicken;
     if (!input.units.empty()) convert.units = input.units;
   }
   object.material = material_file(scene.instances.front().material);
@@ -86,7 +88,8 @@ SceneFile starting_scene(const std::string& path, const InputOptions& input,
   if (scene.ground) file.ground.emplace();
   file.render.intersector = picture.intersector;
   file.render.normals = picture.normals;
-  file.outputs = {object.name + ".exr"};
+  if (!frames.empty()) file.frames = frames;
+  file.outputs = {object.name + (frames.empty() ? ".exr" : ".####.exr")};
   return file;
 }
 

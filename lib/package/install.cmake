@@ -33,5 +33,6 @@ levelray_pkg_config(levelray_vdb "OpenVDB files for levelray" "levelray_io" "-ll
 install(TARGETS levelray-vdb-reader levelray-exr-reader DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/levelray)
 if(TARGET levelray_program)
   install(TARGETS levelray_program DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(FILES data/scene.schema.json data/scene_keys.md DESTINATION ${CMAKE_INSTALL_DATADIR}/levelray)
   install(FILES apps/levelray/completion.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME levelray)
 endif()

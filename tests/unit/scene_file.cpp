@@ -28,7 +28,7 @@ const std::string scene_text = R"({
       },
       "material": {"kind": "glass", "tint": [1, 0.9, 0.8], "ior": 1.33}
     },
-    {"mesh": "floor.obj", "convert": {"voxel": "5mm", "band": "4vx", "sign": "winding", "units": "m"}}
+    {"mesh": "floor.obj", "convert": {"voxel": "5mm", "band": "4vx", "sign": "winding", "units": "m", "thicken": "1vx"}}
   ],
   "lights": [
     {"kind": "directional", "direction": [0, 2, 0], "intensity": 2, "color": [1, 1, 0.5]},
@@ -82,6 +82,7 @@ TEST_CASE("every key of a scene arrives where it belongs") {
   CHECK(dragon.place == "shots/shot.json:11");
   CHECK(scene.objects[1].convert->voxel == "5mm");
   CHECK(scene.objects[1].convert->sign == "winding");
+  CHECK(scene.objects[1].convert->thicken == "1vx");
   CHECK(scene.objects[1].material.kind == "phong");
   CHECK(scene.lights[0].intensity == 2);
   CHECK(scene.lights[1].kind == "point");

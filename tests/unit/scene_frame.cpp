@@ -108,6 +108,7 @@ TEST_CASE("a frame's text changes with what changes the picture, and with nothin
                             "objects.1.mesh=other.obj",
                             "objects.2.convert.resolution=127",
                             "objects.5.grid=three",
+                            "objects.5.redistance=always",
                             "objects.3.shadows=true",
                             "lights.0.intensity=1",
                             "lights=[]",

@@ -71,6 +71,9 @@ SceneFile parse_scene(const std::string& text, const std::string& path,
   scene.path = path;
   scene.place = file;
   check_names(file, root, scene);
+  // Said or not, a mesh is converted somehow: what means the same is the same.
+  for (ObjectFile& object : scene.objects)
+    if (object.mesh && !object.convert) object.convert.emplace();
   return scene;
 }
 
@@ -105,7 +108,8 @@ JsonValue short_scene_json(const SceneFile& scene) {
     for (JsonValue& object : objects->items) {
       ObjectFile standard;
       standard.convert.emplace();
-      drop_defaults(object, to_json(standard), {"material", "kind", "albedo", "level_set", "mesh"});
+      drop_defaults(object, to_json(standard),
+                    {"material", "kind", "albedo", "degrees", "level_set", "mesh"});
     }
   if (JsonValue* lights = json.find("lights"))
     for (JsonValue& light : lights->items)

@@ -63,7 +63,7 @@ struct ConvertFile {
   int resolution = 256;
   std::optional<std::string> voxel; // instead of resolution
   std::string band = "3vx", sign = "auto";
-  std::optional<std::string> units;
+  std::optional<std::string> units, thicken;
   std::string place;
 };
 
@@ -89,7 +89,8 @@ struct ObjectFile {
   int id = 0;                                 // of the id channel; 0: its place in the list, from 1
   std::optional<std::string> level_set, mesh; // one of them: a path, relative to the scene file's folder
   std::string grid;                           // of a .vdb with several
-  std::optional<ConvertFile> convert;         // of a mesh
+  std::string redistance = "auto";            // of a .vdb: "always", "never"
+  std::optional<ConvertFile> convert;         // of a mesh; always there once a scene was read
   TransformFile transform;
   MaterialFile material;
   bool shadows = true; // casts some

@@ -11,7 +11,7 @@ namespace levelray {
 namespace {
 
 bool same_file(const SceneInput& a, const SceneInput& b) {
-  return a.path == b.path && a.is_mesh == b.is_mesh && a.grid == b.grid &&
+  return a.path == b.path && a.is_mesh == b.is_mesh && a.grid == b.grid && a.redistance == b.redistance &&
          to_json(a.convert) == to_json(b.convert);
 }
 
@@ -48,6 +48,7 @@ SceneInputs scene_inputs(const SceneFile& scene) {
     file.path = beside_scene(scene, object.path());
     file.is_mesh = object.mesh.has_value();
     file.grid = object.grid;
+    file.redistance = object.redistance;
     if (object.convert) file.convert = *object.convert;
     file.place = object.place;
     std::size_t i = 0;

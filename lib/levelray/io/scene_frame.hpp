@@ -13,9 +13,9 @@ namespace levelray {
 struct SceneInput {
   std::string path; // beside the scene; #### stands for the frame's number
   bool is_mesh = false;
-  std::string grid;    // of a level set
-  ConvertFile convert; // of a mesh
-  std::string place;   // of the first object that says so
+  std::string grid, redistance; // of a level set
+  ConvertFile convert;          // of a mesh
+  std::string place;            // of the first object that says so
 };
 
 struct SceneInputs {

@@ -27,6 +27,10 @@ inline const std::vector<std::string>& light_kinds() {
   static const std::vector<std::string> names{"directional", "point"};
   return names;
 }
+inline const std::vector<std::string>& redistance_names() {
+  static const std::vector<std::string> names{"auto", "always", "never"};
+  return names;
+}
 inline const std::vector<std::string>& unit_names() {
   static const std::vector<std::string> names{"mm", "cm", "m", "in"};
   return names;
@@ -116,10 +120,12 @@ void describe(Visitor& v, TransformFile& transform) {
 
 template <class Visitor>
 void describe(Visitor& v, ConvertFile& convert) {
-  v.key("resolution", convert.resolution, within(2, 65536), "Voxels along the longest side");
+  v.key("resolution", convert.resolution, within(1, 1 << 20), "Voxels along the longest side");
   v.key("voxel", convert.voxel, length_text(false), "Voxel size, instead of resolution");
   v.key("band", convert.band, length_text(true), "Half-width of the narrow band");
   v.key("sign", convert.sign, one_of_names(sign_method_names()), "What is inside");
+  v.key("thicken", convert.thicken, length_text(true),
+        "Make a sheet of an open mesh: all points within this of it");
   v.key("units", convert.units, one_of_names(unit_names()), "What a coordinate of the mesh means");
 }
 
@@ -161,12 +167,15 @@ void describe(Visitor& v, ObjectFile& object) {
   v.key("level_set", object.level_set, not_empty(), "A .vdb; #### stands for the frame's number");
   v.key("mesh", object.mesh, not_empty(), "A mesh to convert, instead; #### as well");
   v.key("grid", object.grid, any(), "Of a .vdb with several: NAME, NAME[i] or [i]");
+  v.key("redistance", object.redistance, one_of_names(redistance_names()),
+        "Of a .vdb: make distances of its values; auto: where they are none");
   v.key("convert", object.convert, any(), "How the mesh becomes a level set");
   v.key("transform", object.transform, any(), "From the file's space to the world");
   v.key("material", object.material, any(), "What the surface does with light");
   v.key("shadows", object.shadows, any(), "Whether it casts shadows");
   v.one_of({"level_set", "mesh"});
   v.require(object.grid.empty() || object.level_set, "grid", "is for level_set, not for mesh");
+  v.require(object.redistance == "auto" || object.level_set, "redistance", "is for level_set, not for mesh");
   v.require(!object.convert || object.mesh, "convert", "is for mesh, not for level_set");
 }
 
