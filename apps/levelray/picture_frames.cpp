@@ -58,6 +58,12 @@ void check_render_memory(const PictureOptions& picture, const RenderOptions& opt
                                               picture.size, bytes_text(needed), bytes_text(limit)));
 }
 
+std::string show_counter(const PictureOptions& picture, Image& image) {
+  if (picture.show.empty()) return "";
+  return fmt::format(" R, G, B: {} in false colours, white is {}.", picture.show,
+                     show_channel(image, picture.show));
+}
+
 PictureFrames::PictureFrames(const InputOptions& input, const ConversionOptions& conversion,
                              const PictureOptions& picture, int turntable)
     : input_(input), conversion_(conversion), picture_(picture), turntable_(turntable) {
@@ -135,10 +141,7 @@ MadeFrame PictureFrames::make(int frame, std::shared_ptr<const LoadedFrame> load
   scene.instances.front().level_set = &*static_cast<const LoadedSurface&>(*loaded).level_set;
   if (ground_) scene.ground = ground_;
   auto rendered = std::make_shared<RenderedImage>(render_image(scene, options));
-  std::string legend;
-  if (!picture_.show.empty())
-    legend = fmt::format(" R, G, B: {} in false colours, white is {}.", picture_.show,
-                         show_channel(rendered->image, picture_.show));
+  const std::string legend = show_counter(picture_, rendered->image);
   const RenderStats& stats = rendered->stats;
 
   MadeFrame made;

@@ -14,6 +14,9 @@ void write_picture(const std::string& path, const Image& image, const Camera& ca
                    const std::string& scene_hash = "", std::optional<int> frame = {},
                    const std::string& legend = "");
 
+// With --show, makes the picture that of the counter; says, for the comments, what its colours mean.
+std::string show_counter(const PictureOptions& picture, Image& image);
+
 // Throws Error(limit) when rendering with a grid of that size takes more than the limit.
 void check_render_memory(const PictureOptions& picture, const RenderOptions& options,
                          std::uint64_t grid_bytes, std::uint64_t limit);

@@ -4,7 +4,6 @@
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/scene_file.hpp"
-#include "levelray/render/false_colour.hpp"
 #include "picture_frames.hpp"
 #include "render_frames.hpp"
 #include "render_scene.hpp"
@@ -95,10 +94,7 @@ void Render::run_one() const {
   if (stats.hits == 0)
     warn("no ray met the surface; look at --eye and --target, or leave them out to see all of it");
 
-  std::string legend;
-  if (!picture.show.empty())
-    legend = fmt::format(" R, G, B: {} in false colours, white is {}.", picture.show,
-                         show_channel(rendered.image, picture.show));
+  const std::string legend = show_counter(picture, rendered.image);
 
   const Stopwatch write;
   const Camera camera(options.camera);

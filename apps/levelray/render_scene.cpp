@@ -4,6 +4,7 @@
 #include "levelray/core/parallel.hpp"
 #include "scene_frames.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace levelray {
@@ -57,6 +58,10 @@ void take_options(const CLI::App& command, const PictureOptions& picture, SceneF
   if (given(command, "--aov")) scene.film.aov = options.aovs;
   if (given(command, "--intersector")) scene.render.intersector = options.intersector;
   if (given(command, "--normals")) scene.render.normals = options.normals;
+  // The counter that --show needs is no AOV that somebody asked for twice.
+  if (const std::string& show = picture.show;
+      !show.empty() && std::count(scene.film.aov.begin(), scene.film.aov.end(), show) == 0)
+    scene.film.aov.push_back(show);
 }
 
 // One picture, without a number.
@@ -118,7 +123,7 @@ void render_scene(const CLI::App& command, const std::vector<std::string>& overr
     throw Error(ErrorKind::usage,
                 scene.place + ": nothing says where the picture goes; add -o, or the key \"outputs\"");
 
-  const SceneFrames source(scene, input);
+  const SceneFrames source(scene, input, picture);
   const FramePlan plan = frames.plan(source.input_paths(), outputs);
   std::vector<std::string> written = plan.output_paths(plan.frames.front());
   for (const std::string& output : written) {
@@ -131,6 +136,8 @@ void render_scene(const CLI::App& command, const std::vector<std::string>& overr
   Json options = input.json();
   options.update(frames.json());
   options["output"] = outputs;
+  options["show"] = picture.show;
+  options.update(picture.acceleration.json());
   options["threads"] = thread_count();
   options["set"] = overrides;
   if (!frames.many(plan)) return render_one(source, plan, common, input, options);

@@ -24,8 +24,9 @@ struct SceneFrames::LoadedScene : LoadedFrame {
   std::vector<std::shared_ptr<const Loaded>> files; // one per input
 };
 
-SceneFrames::SceneFrames(const SceneFile& scene, const InputOptions& input)
-    : scene_(scene), input_(input), inputs_(scene_inputs(scene)), kept_(inputs_.files.size()) {}
+SceneFrames::SceneFrames(const SceneFile& scene, const InputOptions& input, const PictureOptions& picture)
+    : scene_(scene), input_(input), picture_(picture), inputs_(scene_inputs(scene)),
+      kept_(inputs_.files.size()) {}
 
 std::vector<std::string> SceneFrames::input_paths() const {
   std::vector<std::string> paths;
@@ -36,6 +37,8 @@ std::vector<std::string> SceneFrames::input_paths() const {
 std::string SceneFrames::settings(int frame) const {
   Json reading = input_.json();
   for (const char* key : {"input", "max_memory", "trust_input", "read_timeout"}) reading.erase(key);
+  reading["show"] = picture_.show;
+  reading.update(picture_.acceleration.json()); // which the counters tell of
   return frame_text(scene_, inputs_, frame) + "\n" + reading.dump();
 }
 
@@ -111,8 +114,10 @@ MadeFrame SceneFrames::make(int frame, std::shared_ptr<const LoadedFrame> loaded
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     scene.instances[i].level_set = &*files[inputs_.of_object[i]]->level_set;
   RenderOptions options = render_options_at(scene_, frame);
+  options.acceleration = picture_.acceleration.resolve();
   options.progress = progress;
-  auto rendered = std::make_shared<const RenderedImage>(render_image(scene, options));
+  auto rendered = std::make_shared<RenderedImage>(render_image(scene, options));
+  const std::string legend = show_counter(picture_, rendered->image);
   const RenderStats& stats = rendered->stats;
 
   MadeFrame made;
@@ -126,12 +131,12 @@ MadeFrame SceneFrames::make(int frame, std::shared_ptr<const LoadedFrame> loaded
         {"trace", stats.trace_ms.front()},
         {"shade", stats.shade_ms.front()}}}};
   if (stats.hits == 0) made.warnings.push_back("no ray met an object; look at camera.eye and camera.target");
-  made.write = [rendered, outputs, frame, settings = options.camera](const std::string& scene_hash) {
+  made.write = [rendered, outputs, frame, legend, settings = options.camera](const std::string& scene_hash) {
     const Camera camera(settings);
     const std::optional<int> number =
         scene_hash.empty() ? std::optional<int>() : frame; // of a frame of a job
     for (const std::string& output : outputs)
-      write_picture(output, rendered->image, camera, scene_hash, number);
+      write_picture(output, rendered->image, camera, scene_hash, number, legend);
   };
   return made;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "levelray/trace/level_set.hpp"
+#include "render_options.hpp"
 #include "scene_input.hpp"
 #include "sequence.hpp"
 
@@ -11,8 +12,9 @@ namespace levelray {
 
 class SceneFrames : public FrameSource {
  public:
-  // `input`: how files are read, besides what the scene says of each. Both must outlive this.
-  SceneFrames(const SceneFile& scene, const InputOptions& input);
+  // `input`: how files are read, besides what the scene says of each; of `picture`, how rays are spared work
+  // and what is shown of it. All must outlive this.
+  SceneFrames(const SceneFile& scene, const InputOptions& input, const PictureOptions& picture);
 
   // What the frames are made of: patterns, one per input of the plan.
   std::vector<std::string> input_paths() const;
@@ -36,6 +38,7 @@ class SceneFrames : public FrameSource {
 
   const SceneFile& scene_;
   const InputOptions& input_;
+  const PictureOptions& picture_;
   const SceneInputs inputs_;
   mutable std::mutex mutex_;
   mutable std::vector<std::shared_ptr<const Loaded>> kept_; // of the last frame, one per input
