@@ -17,8 +17,13 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// Half a second is the promise; a machine under load may take its time to run the handler at all.
+// Half a second is the promise. The thread sanitizer hands a signal on only when the program calls into it,
+// which a loop of arithmetic does not: with it the tests ask for an end, not for its time.
+#ifdef __SANITIZE_THREAD__
+constexpr double promised_seconds = 30;
+#else
 constexpr double promised_seconds = 0.5;
+#endif
 
 } // namespace
 

@@ -14,8 +14,8 @@ struct ExrOptions {
   std::string software;           // e.g. "levelray 1.2.3"; empty: no such attribute
   std::string comments;           // e.g. what the channels mean; empty: none
   bool all_float = false;         // R, G, B, A as float, too: values as they are
-  std::optional<int> frame;       // attribute levelray:frame
-  std::string scene_hash;         // when given, the file is stamped: io/scene_stamp.hpp
+  std::optional<int> frame{};     // attribute levelray:frame
+  std::string scene_hash{};       // when given, the file is stamped: io/scene_stamp.hpp
 };
 
 // The bytes of a scan-line OpenEXR file with ZIP compression: channels R, G, B, A as half (values beyond its
