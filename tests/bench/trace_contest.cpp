@@ -1,5 +1,6 @@
 #include "bench/trace_contest.hpp"
 
+#include "levelray/accel/minmax_buffer.hpp"
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/trace/level_set.hpp"
@@ -22,6 +23,7 @@ namespace levelray::bench {
 namespace {
 
 constexpr std::size_t tile_rays = 1024; // a 32x32 tile
+constexpr int buffer_cells = 128;       // the program's default
 
 struct Agreement {
   std::size_t hits = 0, only_ours = 0, only_theirs = 0;
@@ -89,7 +91,11 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
   options.resolution = setup.resolution;
   const BlockGrid grid = mesh_to_grid(prepare_mesh(mesh), options).grid;
   const double voxel = grid.transform.voxel_size;
+  const Camera camera = test::study_camera(setup.image_size);
+  const auto pixels = test::study_pixels(setup.image_size);
   const std::vector<WorldRay> rays = test::study_rays(setup.image_size);
+  PinholeView view{camera.settings().eye, camera.right(), camera.up(), camera.forward()};
+  view.half_width = view.half_height = camera.half_height();
   const LevelSet level_set(grid);
   const OpenVdbLevelSet peer = OpenVdbLevelSet::from_grid(grid);
 
@@ -101,19 +107,35 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
     return watch.elapsed();
   };
   std::vector<Contestant> contestants;
-  // As the renderer does: a tile at a time, of which t and normal are kept.
-  const auto trace_with = [&](const std::string& scheme) {
+  // A tile at a time, of which t and normal are kept; with the bounds of a min/max buffer, or without.
+  const auto trace_with = [&](const std::string& scheme, const MinMaxBuffer* buffer) {
     return by_tiles([&](std::size_t begin, std::size_t n) {
+      std::array<RayBounds, tile_rays> bounds;
+      PrimaryOptions primary;
+      primary.intersector = setup.intersector;
+      if (buffer) {
+        for (std::size_t i = 0; i < n; ++i)
+          bounds[i] =
+              buffer->at(pixels[begin + i][0] / setup.image_size, pixels[begin + i][1] / setup.image_size);
+        primary.bounds = {bounds.data(), n};
+      }
       std::array<Hit, tile_rays> tile_hits;
       std::array<Vec3f, tile_rays> normals;
       const std::span<const WorldRay> tile(&rays[begin], n);
-      closest_hits(level_set, tile, setup.intersector, {tile_hits.data(), n});
+      closest_hits(level_set, tile, primary, {tile_hits.data(), n});
       hit_normals(level_set, tile, {tile_hits.data(), n}, scheme, {normals.data(), n});
       for (std::size_t i = 0; i < n; ++i)
         hits[begin + i] = {bool(tile_hits[i]), tile_hits[i].t, Vec3d(normals[i])};
     });
   };
-  contestants.push_back({"levelray", [&] { return trace_with(setup.normals); }});
+  // As the renderer does, which draws a buffer for each picture.
+  const auto render_with = [&](const std::string& scheme) {
+    const Stopwatch watch;
+    const MinMaxBuffer buffer(level_set.surface(), grid.transform, view, buffer_cells);
+    trace_with(scheme, &buffer);
+    return watch.elapsed();
+  };
+  contestants.push_back({"levelray", [&] { return render_with(setup.normals); }});
   contestants.push_back({"levelray's level set", [&] {
                            const Stopwatch watch;
                            const LevelSet again(grid);
@@ -126,7 +148,8 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
                            const PeerTime time = peer.trace(rays, peer_hits);
                            return Time{time.wall_ms, time.cpu_ms};
                          }});
-  contestants.push_back({"levelray, OpenVDB's normals", [&] { return trace_with("analytic"); }});
+  contestants.push_back({"levelray, OpenVDB's normals", [&] { return render_with("analytic"); }});
+  contestants.push_back({"levelray, no min/max buffer", [&] { return trace_with(setup.normals, nullptr); }});
 #ifdef LEVELRAY_EMBREE
   std::optional<test::EmbreeScene> scene;
   std::vector<test::EmbreeHit> embree_hits(rays.size());
@@ -156,7 +179,8 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
 
   // Everyone's answers before anyone's times.
   for (Contestant& c : contestants) c.run();
-  const double analytic_degrees = agreement(hits, peer_hits, voxel).degrees; // the last to write them
+  contestants[3].run();
+  const double analytic_degrees = agreement(hits, peer_hits, voxel).degrees;
   fmt::print("  analytic normals and OpenVDB's: {:.2g} degrees apart\n", analytic_degrees);
   if (!(analytic_degrees < 0.5)) throw std::runtime_error("analytic normals are not OpenVDB's");
   contestants[0].run();
@@ -200,7 +224,7 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
       "({:.2f}-{:.2f}); wall: {:.2f}; with OpenVDB's kind of normals (analytic): {:.2f} ({:.2f}-{:.2f})\n",
       alone.median, alone.min, alone.max, whole.median, whole.min, whole.max, alone_wall.median, alike.median,
       alike.min, alike.max);
-  for (std::size_t i = 4; i < contestants.size(); ++i)
+  for (std::size_t i = 5; i < contestants.size(); ++i)
     fmt::print("  {} / levelray, CPU: {:.2f}\n", contestants[i].name,
                cpu_ratio({&contestants[i]}, {&levelray}).median);
   fmt::print("\n");
