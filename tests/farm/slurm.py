@@ -62,17 +62,18 @@ def size_for(program, folder, seconds):
 
 
 def lose_node(cluster, name):
-    """Kills the node's daemon and all but one of its renders, stops that one, and tells the controller. Returns it, or
-    None when nothing is rendered there now."""
+    """Kills the node's daemon, tells the controller, kills all but one of the node's renders and stops that one. Returns
+    it, or None when nothing is rendered there now."""
     renders = [p for p in cluster.processes()
                if environment(p).get("SLURMD_NODENAME") == name and program_of(p) == "levelray"]
     if not renders:
         return None
     os.kill(renders[0], signal.SIGSTOP)
     cluster.kill_daemon(name)
+    cluster.run("scontrol", "update", f"nodename={name}", "state=down", "reason=lost")
+    # Only now: a step that loses its task while the controller still trusts the node reports a failed task.
     for process in renders[1:]:
         os.kill(process, signal.SIGKILL)
-    cluster.run("scontrol", "update", f"nodename={name}", "state=down", "reason=lost")
     return renders[0]
 
 
