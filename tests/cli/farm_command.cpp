@@ -1,4 +1,4 @@
-// levelray farm: scripts that a shell reads as they were meant. That Slurm runs them is seen in tests/farm.
+// levelray farm: scripts that a shell reads as they were meant. That Slurm runs them is seen in tests/jobs.
 #include "job_script.hpp"
 #include "support/catch.hpp"
 #include "support/mesh_files.hpp"
@@ -181,7 +181,7 @@ TEST_CASE("farm refuses what makes no job") {
 }
 
 TEST_CASE("the command of the OpenCue job is one that render takes") {
-  const std::string job = content_of(LEVELRAY_SOURCE_DIR "/data/farm/opencue.xml");
+  const std::string job = content_of(LEVELRAY_SOURCE_DIR "/data/jobs/opencue.xml");
   const std::size_t begin = job.find("<cmd>"), end = job.find("</cmd>");
   REQUIRE(end != std::string::npos);
   std::string command = job.substr(begin + 5, end - begin - 5);

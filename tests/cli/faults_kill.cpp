@@ -163,7 +163,7 @@ TEST_CASE(
 }
 
 TEST_CASE("fault 15: the nodes of a farm are lost in the test of `levelray farm`") {
-  // tests/farm starts a real Slurm and kills a node; what it rests on are faults 1, 2 and 14 above.
+  // tests/jobs starts a real Slurm and kills a node; what it rests on are faults 1, 2 and 14 above.
   SUCCEED();
 }
 
