@@ -22,14 +22,16 @@ struct JsonValue {
   std::vector<JsonMember> members;
   std::string origin; // when not from a file: what messages name instead, e.g. "--set film.samples=4"
 
-  JsonValue() = default;
-  JsonValue(bool value) : kind(Kind::boolean), boolean(value) {}
-  JsonValue(double value) : kind(Kind::number), number(value) {}
-  JsonValue(int value) : JsonValue(static_cast<double>(value)) {}
-  JsonValue(std::string value) : kind(Kind::string), string(std::move(value)) {}
-  JsonValue(const char* value) : JsonValue(std::string(value)) {}
-  static JsonValue array(std::vector<JsonValue> items = {});
-  static JsonValue object(std::vector<JsonMember> members = {});
+  JsonValue();
+  JsonValue(bool value);
+  JsonValue(double value);
+  JsonValue(int value);
+  JsonValue(std::string value);
+  JsonValue(const char* value);
+  static JsonValue array();
+  static JsonValue array(std::vector<JsonValue> items);
+  static JsonValue object();
+  static JsonValue object(std::vector<JsonMember> members);
 
   const JsonValue* find(const std::string& key) const; // of an object; null: no such member
   JsonValue* find(const std::string& key);
@@ -41,6 +43,20 @@ struct JsonMember {
   JsonValue value;
   int line = 0; // of the key
 };
+
+// Here and not above, where members are of a type not yet complete.
+inline JsonValue::JsonValue() = default;
+inline JsonValue::JsonValue(bool value) : kind(Kind::boolean), boolean(value) {}
+inline JsonValue::JsonValue(double value) : kind(Kind::number), number(value) {}
+inline JsonValue::JsonValue(int value) : JsonValue(static_cast<double>(value)) {}
+inline JsonValue::JsonValue(std::string value) : kind(Kind::string), string(std::move(value)) {}
+inline JsonValue::JsonValue(const char* value) : JsonValue(std::string(value)) {}
+inline JsonValue JsonValue::array() {
+  return array({});
+}
+inline JsonValue JsonValue::object() {
+  return object({});
+}
 
 // Compares values, not places.
 bool operator==(const JsonValue& a, const JsonValue& b);
