@@ -113,7 +113,7 @@ std::shared_ptr<const LoadedFrame> PictureFrames::load(const std::vector<std::st
                                                        std::uint64_t memory, double seconds) const {
   InputOptions input = input_;
   input.path = paths.front();
-  input.max_memory = std::to_string(memory);
+  input.max_memory = std::to_string(std::max<std::uint64_t>(memory, 1)); // 0 would mean no limit
   input.read_timeout = std::min(input.read_timeout, seconds);
   CommonOptions silent;
   silent.quiet = silent.keep_warnings = true;
