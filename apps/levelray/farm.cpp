@@ -1,6 +1,7 @@
 // levelray farm: jobs for other people's queues. There is no engine of our own.
 #include "commands.hpp"
 #include "console.hpp"
+#include "framing.hpp"
 #include "job_script.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/io/frame_list.hpp"
@@ -73,9 +74,10 @@ std::vector<std::string> Farm::render_command() const {
   for (const char* own : {"-f", "--frames", "--skip-existing"})
     if (has_option(words, own))
       throw Error(ErrorKind::usage, fmt::format("{} stands before --, once for all tasks", own));
-  // Without a scene, camera and ground may be placed by what the first frame holds: for every task the job's.
-  if (!names_scene(words) && !has_option(words, "--camera-frame"))
-    command.push_back("--camera-frame=" + frames);
+  // Without a scene, camera and ground may be placed by what frames hold: for every task by the whole job's.
+  if (!names_scene(words) && !has_option(words, "--camera-frames"))
+    command.push_back(
+        fmt::format("--camera-frames={}", fmt::join(framing_frames(parse_frames("--frames", frames)), ",")));
   return command;
 }
 

@@ -20,8 +20,7 @@ void check_plan(const ConvertPlan& plan) {
 } // namespace
 
 std::string MeshFrames::settings(int) const {
-  Json json = input_.json();
-  for (const char* key : {"input", "max_memory", "trust_input", "read_timeout"}) json.erase(key);
+  Json json = input_.lasting_json();
   json.update(conversion_.json());
   json["half"] = write_.half;
   return json.dump();

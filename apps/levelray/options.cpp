@@ -93,6 +93,12 @@ Json InputOptions::json() const {
           {"max_memory", memory_limit()}};
 }
 
+Json InputOptions::lasting_json() const {
+  Json lasting = json();
+  for (const char* key : {"input", "trust_input", "read_timeout", "max_memory"}) lasting.erase(key);
+  return lasting;
+}
+
 std::uint64_t InputOptions::memory_limit() const {
   constexpr std::uint64_t unlimited = std::uint64_t{1} << 62; // leaves room for sums
   if (!max_memory.empty()) {

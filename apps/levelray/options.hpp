@@ -38,6 +38,7 @@ struct InputOptions {
   MeshReadOptions mesh_options() const;
   VdbReadOptions vdb_options() const; // how to read it as it is
   Json json() const;                  // as given
+  Json lasting_json() const;          // of it, what may decide what is read: neither the path nor limits
   // In bytes: as given (0: no limit, a number beyond all machines), or four fifths of the machine's memory.
   std::uint64_t memory_limit() const;
 };

@@ -5,7 +5,6 @@
 #include "levelray/io/output_file.hpp"
 #include "levelray/io/png_writer.hpp"
 #include "levelray/render/false_colour.hpp"
-#include "levelray/render/ground.hpp"
 #include "levelray/render/scene.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "turntable.hpp"
@@ -66,23 +65,27 @@ std::string show_counter(const PictureOptions& picture, Image& image) {
 
 PictureFrames::PictureFrames(const InputOptions& input, const ConversionOptions& conversion,
                              const PictureOptions& picture, int turntable)
-    : input_(input), conversion_(conversion), picture_(picture), turntable_(turntable) {
-  if (!needs_settling()) options_ = picture_.resolve(BlockGrid(), turntable_ > 0);
+    : input_(input), conversion_(conversion), picture_(picture), turntable_(turntable),
+      seen_(picture.resolve_without_grid().camera) {
+  if (!needs_settling()) settle();
 }
 
 bool PictureFrames::needs_settling() const {
   return picture_.needs_framing() || picture_.ground;
 }
 
-void PictureFrames::settle(const LoadedFrame& loaded) {
-  options_ = picture_.resolve(grid_of(loaded), turntable_ > 0);
+void PictureFrames::see(const LoadedFrame& loaded) {
+  if (turntable_ > 0)
+    seen_.add_turning(grid_of(loaded));
+  else
+    seen_.add(grid_of(loaded));
+}
+
+void PictureFrames::settle() {
+  options_ = picture_.resolve(seen_);
   if (!options_.ground) return;
-  const Scene scene = one_grid_scene(grid_of(loaded), options_);
-  const Ground ground = place_ground(*scene.ground, scene.instances);
-  ground_ = *scene.ground;
-  ground_->height = ground.height;
-  ground_->centre = ground.centre;
-  ground_->radius = ground.radius;
+  ground_.emplace().up = options_.camera.up;
+  seen_.place(*ground_);
 }
 
 RenderOptions PictureFrames::options_of(int frame) const {
@@ -98,13 +101,11 @@ std::string PictureFrames::settings(int frame) const {
   const RenderOptions options = options_of(frame);
   Json json = picture_.json(options, 0);
   for (const char* key : {"threads", "output", "repeat"}) json.erase(key);
-  if (ground_)
+  if (ground_ && ground_->height)
     json["ground"] = {{"height", *ground_->height},
                       {"centre", vector_json(*ground_->centre)},
                       {"radius", *ground_->radius}};
-  Json input = input_.json();
-  for (const char* key : {"input", "max_memory", "trust_input", "read_timeout"}) input.erase(key);
-  json.update(input);
+  json.update(input_.lasting_json());
   json.update(conversion_.json());
   return json.dump();
 }

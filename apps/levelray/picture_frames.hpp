@@ -27,11 +27,11 @@ class PictureFrames : public FrameSource {
   PictureFrames(const InputOptions& input, const ConversionOptions& conversion, const PictureOptions& picture,
                 int turntable);
 
-  // Settles camera, lights and ground for all frames, by the surface of this one. Without it they have to be
-  // given as options.
-  void settle(const LoadedFrame& loaded);
-  // Whether settle has to be called.
+  // Camera, lights and ground are the same for all frames. Where the options leave them open, they go by the
+  // surfaces of the frames that are shown to `see`, and then settled.
   bool needs_settling() const;
+  void see(const LoadedFrame& loaded);
+  void settle();
   RenderOptions options_of(int frame) const;
 
   const char* verb() const override { return "rendered"; }
@@ -48,6 +48,7 @@ class PictureFrames : public FrameSource {
   const ConversionOptions& conversion_;
   const PictureOptions& picture_;
   const int turntable_;
+  Framing seen_;
   std::optional<GroundSettings> ground_; // in one place for all frames
   RenderOptions options_;                // of frame 1 of a turntable; of all frames otherwise
 };

@@ -148,8 +148,8 @@ there are three that go along with the camera. Backgrounds are transparent (alph
 AOVs 0).
 
 With -f the frame's number replaces ####, %04d or {frame} in paths. All frames have one camera: without --eye and
---target the first frame of -f that can be read is framed; where parts of a sequence are rendered by themselves,
-name that frame by --camera-frame. A frame that fails is reported and the others go on (exit 4).)");
+--target it sees all of the first, middle and last frame of -f; where parts of a sequence are rendered by
+themselves, name these frames by --camera-frames. A frame that fails is reported and the others go on (exit 4).)");
   command
       .add_option("IN", options->input.path,
                   "A .vdb, a mesh, or a scene (.json); -: a mesh on standard input (needs --format)")

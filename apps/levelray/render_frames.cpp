@@ -16,9 +16,10 @@ void RenderFramesOptions::add_to(CLI::App& command) {
   sequence.add_to(command);
   const std::string group = "Sequence";
   command
-      .add_option("--camera-frame", camera_frame,
-                  "The frame that an automatic camera (and the ground) goes by; default: the first of -f")
-      ->type_name("F")
+      .add_option("--camera-frames", camera_frames,
+                  "The frames that an automatic camera sees all of, and whose lowest point the ground is "
+                  "under; default: first, middle and last of -f")
+      ->type_name("LIST")
       ->group(group);
   command.add_option("--turntable", turntable, "Go round a single input in N frames, 1 to N")
       ->check(CLI::Range(1, 1000000))
@@ -60,7 +61,7 @@ MovieOptions RenderFramesOptions::movie_options() const {
 
 Json RenderFramesOptions::json() const {
   Json json = sequence.json();
-  json["camera_frame"] = camera_frame;
+  json["camera_frames"] = camera_frames;
   json["turntable"] = turntable;
   json["movie"] = movie;
   json["fps"] = fps;
@@ -75,8 +76,9 @@ void render_frames(const FramePlan& plan, const CommonOptions& common, const Inp
   if (!common.json.empty() && common.json != "-") check_output(common.json, input.path, {}, written);
   conversion.check();
   parse_unit(input.units);
-  std::vector<int> camera_frames = plan.frames;
-  if (!options.camera_frame.empty()) camera_frames = parse_frames("--camera-frame", options.camera_frame);
+  std::vector<int> camera_frames = options.camera_frames.empty()
+                                       ? framing_frames(plan.frames)
+                                       : parse_frames("--camera-frames", options.camera_frames);
   check_render_memory(picture, picture.resolve_without_grid(), 0, input.memory_limit());
 
   const ThreadLimit threads(common.threads);
@@ -85,14 +87,24 @@ void render_frames(const FramePlan& plan, const CommonOptions& common, const Inp
   SequenceReport report(common, source.verb(), plan.frames.size());
   Json more = Json::object();
   if (source.needs_settling()) {
+    std::vector<int> seen;
     std::vector<std::string> unseen;
-    const auto [frame, loaded] = sequence.load_first(source, camera_frames, unseen);
-    source.settle(*loaded);
+    const auto show = [&](int frame, const LoadedFrame& loaded) {
+      source.see(loaded);
+      seen.push_back(frame);
+    };
+    std::reverse(camera_frames.begin(), camera_frames.end()); // what is loaded last is kept for its turn
+    const std::size_t wanted = camera_frames.size();
+    if (options.camera_frames.empty()) // any other frame is better than none
+      camera_frames.insert(camera_frames.end(), plan.frames.begin(), plan.frames.end());
+    sequence.show(source, camera_frames, wanted, show, unseen);
+    source.settle();
+    std::reverse(seen.begin(), seen.end());
     if (plan.numbered && common.talks() && options.turntable == 0)
-      print(
-          fmt::format("camera{}: by frame {}, for all frames\n", picture.ground ? " and ground" : "", frame));
+      print(fmt::format("camera{}: by {} {}, for all frames\n", picture.ground ? " and ground" : "",
+                        seen.size() == 1 ? "frame" : "frames", frames_text(seen)));
     for (const std::string& problem : unseen) print_warning("no camera by " + problem);
-    more["camera_frame"] = frame;
+    more["camera_frames"] = seen;
   }
   Json all_options = picture.json(source.options_of(plan.frames.front()), thread_count());
   all_options.update(input.json());

@@ -9,7 +9,7 @@ namespace levelray {
 struct RenderFramesOptions {
   SequenceOptions sequence;
   int turntable = 0;
-  std::string camera_frame, movie, background = "0.2,0.2,0.2";
+  std::string camera_frames, movie, background = "0.2,0.2,0.2";
   double fps = 24;
 
   void add_to(CLI::App& command);

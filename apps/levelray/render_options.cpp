@@ -4,9 +4,7 @@
 #include "levelray/core/methods.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/normal/normals.hpp"
-#include "levelray/render/surface_extent.hpp"
 #include "names.hpp"
-#include "turntable.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -162,19 +160,17 @@ RenderOptions PictureOptions::resolve_without_grid() const {
   return options;
 }
 
-RenderOptions PictureOptions::resolve(const BlockGrid& grid, bool turning) const {
+RenderOptions PictureOptions::resolve(const BlockGrid& grid) const {
+  Framing surface(resolve_without_grid().camera);
+  if (needs_framing()) surface.add(grid);
+  return resolve(surface);
+}
+
+RenderOptions PictureOptions::resolve(const Framing& surfaces) const {
   RenderOptions options = resolve_without_grid();
   CameraSettings& camera = options.camera;
   if (needs_framing()) {
-    const Box3d bounds = surface_bounds(grid);
-    const SupportFunction support = [&](std::span<const Vec3d> directions) {
-      return turning ? turned_surface_support(grid, camera.up, bounds.center(), directions)
-                     : surface_support(grid, directions);
-    };
-    const CameraSettings frame =
-        bounds.isEmpty()
-            ? framing_camera(bounds, camera.width, camera.height, fov, camera.up)
-            : framing_camera(support, bounds.center(), camera.width, camera.height, fov, camera.up);
+    const CameraSettings frame = surfaces.camera();
     if (eye.empty()) camera.eye = target.empty() ? frame.eye : camera.target + (frame.eye - frame.target);
     if (target.empty()) camera.target = frame.target;
   }

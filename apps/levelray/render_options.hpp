@@ -2,6 +2,7 @@
 #pragma once
 
 #include "acceleration_options.hpp"
+#include "framing.hpp"
 #include "input.hpp"
 #include "levelray/render/render_image.hpp"
 
@@ -24,10 +25,10 @@ struct PictureOptions {
   void check() const { resolve_without_grid(); }
   // All but the camera's place, and lights where none are given.
   RenderOptions resolve_without_grid() const;
-  // With a camera: the given one, completed by framing the grid's surface. With `turning`, all of it is seen
-  // from everywhere on the camera's way round the surface's middle.
-  RenderOptions resolve(const BlockGrid& grid, bool turning = false) const;
-  // Whether that depends on the grid.
+  // With a camera: the given one, completed by one that sees all surfaces.
+  RenderOptions resolve(const Framing& surfaces) const;
+  RenderOptions resolve(const BlockGrid& grid) const; // of one surface
+  // Whether that depends on surfaces.
   bool needs_framing() const { return eye.empty() || target.empty(); }
   // Every option in force.
   Json json(const RenderOptions& resolved, int threads) const;

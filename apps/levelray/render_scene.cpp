@@ -25,7 +25,7 @@ void refuse_foreign_options(const CLI::App& command) {
                  {"--up", "camera.up"},
                  {"--fov", "camera.fov"},
                  {"--turntable", "camera.keys"},
-                 {"--camera-frame", "camera"},
+                 {"--camera-frames", "camera"},
                  {"--light", "lights"},
                  {"--shadows", "lights.0.shadows"},
                  {"--ground", "ground"},

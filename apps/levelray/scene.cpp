@@ -1,5 +1,6 @@
 // levelray scene: starts a scene file, or checks one.
 #include "commands.hpp"
+#include "framing.hpp"
 #include "input.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
@@ -56,9 +57,17 @@ void SceneCommand::init() const {
   if (frames.empty() && pattern.has_frame() && !std::filesystem::exists(input.path, ignored))
     throw Error(ErrorKind::usage,
                 printable(input.path, 250) + ": a place for frames needs -f, e.g. -f 1-100");
-  if (!frames.empty()) first.path = pattern.path(parse_frames("--frames", frames).front());
-  const LoadedGrid loaded = load_grid(first, conversion, common, progress);
-  const RenderOptions options = picture.resolve(loaded.grid);
+  std::vector<int> numbers{0};
+  if (!frames.empty()) numbers = framing_frames(parse_frames("--frames", frames));
+  Framing seen(picture.resolve_without_grid().camera);
+  LoadedGrid loaded;
+  for (auto frame = numbers.rbegin(); frame != numbers.rend(); ++frame) { // the first one last, to stay
+    if (!frames.empty()) first.path = pattern.path(*frame);
+    loaded = {};
+    loaded = load_grid(first, conversion, common, progress);
+    seen.add(loaded.grid);
+  }
+  const RenderOptions options = picture.resolve(seen);
   const SceneFile scene = starting_scene(output, input, conversion, frames, loaded.grid, options);
   write_file_atomically(output, json_text(short_scene_json(scene)) + "\n");
   if (common.talks())

@@ -35,8 +35,7 @@ std::vector<std::string> SceneFrames::input_paths() const {
 }
 
 std::string SceneFrames::settings(int frame) const {
-  Json reading = input_.json();
-  for (const char* key : {"input", "max_memory", "trust_input", "read_timeout"}) reading.erase(key);
+  Json reading = input_.lasting_json();
   reading["show"] = picture_.show;
   reading.update(picture_.acceleration.json()); // which the counters tell of
   return frame_text(scene_, inputs_, frame) + "\n" + reading.dump();

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <future>
 #include <new>
+#include <set>
 
 namespace levelray {
 
@@ -90,25 +91,28 @@ std::shared_ptr<const LoadedFrame> Sequence::load(const FrameSource& source, con
   return kept_ = std::move(loaded);
 }
 
-std::pair<int, std::shared_ptr<const LoadedFrame>> Sequence::load_first(const FrameSource& source,
-                                                                        const std::vector<int>& frames,
-                                                                        std::vector<std::string>& problems) {
+void Sequence::show(const FrameSource& source, const std::vector<int>& frames, std::size_t wanted,
+                    const std::function<void(int, const LoadedFrame&)>& shown,
+                    std::vector<std::string>& problems) {
   std::optional<Failure> first;
-  for (const int frame : frames) {
-    std::shared_ptr<const LoadedFrame> loaded;
+  std::set<int> tried;
+  bool any = false;
+  for (std::size_t i = 0; i < frames.size() && (i < wanted || !any); ++i) {
+    if (!tried.insert(frames[i]).second) continue;
     const std::optional<Failure> failure = failure_of(
         [&] {
-          const FrameInputs::Found inputs = inputs_.find(frame);
+          const FrameInputs::Found inputs = inputs_.find(frames[i]);
           if (!inputs.missing.empty()) throw Error(ErrorKind::bad_input, inputs.missing);
-          loaded = load(source, inputs, all_memory(source));
+          shown(frames[i], *load(source, inputs, all_memory(source)));
         },
         options_.frame_timeout);
-    if (!failure) return {frame, loaded};
-    problems.push_back(fmt::format("frame {}: {}", frame, failure->text));
-    if (!first) first = failure;
+    any |= !failure;
+    if (failure) problems.push_back(fmt::format("frame {}: {}", frames[i], failure->text));
+    if (failure && !first) first = failure;
   }
-  throw Error(first->kind,
-              fmt::format("none of {} frames can be read; first: {}", frames.size(), first->text));
+  if (!any)
+    throw Error(first->kind,
+                fmt::format("none of {} frames can be read; first: {}", tried.size(), first->text));
 }
 
 void Sequence::prepare_or_throw(const FrameSource& source, std::uint64_t memory, Prepared& prepared) {

@@ -53,10 +53,12 @@ class Sequence {
 
   const FramePlan& plan() const { return plan_; }
 
-  // The first of `frames` whose inputs exist and can be loaded, which is kept for its own turn. Each one that
-  // cannot adds a line to `problems`. Throws the first problem when there is none at all.
-  std::pair<int, std::shared_ptr<const LoadedFrame>>
-  load_first(const FrameSource& source, const std::vector<int>& frames, std::vector<std::string>& problems);
+  // Loads the first `wanted` of `frames` one by one, and shows them; when none of them can be loaded, the
+  // first of the others that can. The last one is kept for its own turn. Each one that cannot be loaded adds
+  // a line to `problems`. Throws the first problem when there is nothing to show.
+  void show(const FrameSource& source, const std::vector<int>& frames, std::size_t wanted,
+            const std::function<void(int frame, const LoadedFrame&)>& shown,
+            std::vector<std::string>& problems);
 
   // Makes all frames. A frame that fails is reported, and the others go on (unless --fail-fast);
   // Error(cannot_write) ends the job. Throws Cancelled after having told how far it came.

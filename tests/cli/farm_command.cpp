@@ -122,7 +122,7 @@ TEST_CASE("farm writes a script for a scene and for a whole command, to a file o
   const std::string script = content_of(folder / "job.sh");
   CHECK_THAT(script, Catch::Contains("  1-8\n  9-16\n  17-20\n") &&
                          Catch::Contains(" render shot.json --frames=") &&
-                         !Catch::Contains("--camera-frame") && Catch::Contains("--job-name=shot\n"));
+                         !Catch::Contains("--camera-frames") && Catch::Contains("--job-name=shot\n"));
   struct stat status {};
   REQUIRE(::stat((folder / "job.sh").c_str(), &status) == 0);
   CHECK((status.st_mode & S_IXUSR) != 0);
@@ -131,12 +131,10 @@ TEST_CASE("farm writes a script for a scene and for a whole command, to a file o
       run_program({"farm", "slurm", "-f", "1-4", "--sbatch=--mem=8G", "--sbatch=--time=10", "--program",
                    "/opt/levelray", "--", "render", "a b.####.vdb", "-o", "x.####.exr", "-j", "2"});
   CHECK(whole.code == 0);
-  CHECK_THAT(
-      whole.out,
-      Catch::Contains("#SBATCH --mem=8G\n#SBATCH --time=10\n") &&
-          // Otherwise every task would place its camera by its own first frame.
-          Catch::Contains(
-              "exec /opt/levelray render 'a b.####.vdb' -o 'x.####.exr' -j 2 --camera-frame=1-4 --frames="));
+  CHECK_THAT(whole.out, Catch::Contains("#SBATCH --mem=8G\n#SBATCH --time=10\n") &&
+                            // Otherwise every task would place its camera by its own frames.
+                            Catch::Contains("exec /opt/levelray render 'a b.####.vdb' -o 'x.####.exr' -j 2 "
+                                            "--camera-frames=1,2,4 --frames="));
   CHECK_THAT(run_program({"farm", "parallel", "shot.json", "-f", "1-4", "--", "--set", "film.samples=4"}).out,
              Catch::Contains(" render shot.json --set film.samples=4 --frames=\"$1\" --skip-existing\n"));
   const RunResult many = run_program({"farm", "slurm", "shot.json", "-f", "1-5000", "--chunk", "1"});

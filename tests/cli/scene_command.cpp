@@ -1,3 +1,6 @@
+#include "levelray/core/error.hpp"
+#include "levelray/io/scene_file.hpp"
+#include "scene_frames.hpp"
 #include "support/catch.hpp"
 #include "support/mesh_files.hpp"
 #include "support/read_exr.hpp"
@@ -219,4 +222,22 @@ TEST_CASE("scenes skip frames that are there, and make those again whose scene o
   CHECK(statuses({}) == "srs");
   CHECK(content_of(folder / "out.0002.exr") == second);
   CHECK(statuses({"--set", "camera.keys.1.fov=35"}) == "srr"); // frame 1 has the first key's
+}
+
+TEST_CASE("a scene's file for which no memory is left is refused, not loaded without a limit") {
+  const TemporaryFolder folder;
+  write_text(folder / "ball.obj", ball_obj(20));
+  write_text(folder / "shot.json", scene_text());
+  const levelray::SceneFile scene = levelray::read_scene(folder / "shot.json");
+  const levelray::InputOptions input;
+  const levelray::PictureOptions picture;
+  const levelray::SceneFrames frames(scene, input, picture);
+  try {
+    frames.load(frames.input_paths(), 0, 60);
+    FAIL("the file was loaded");
+  } catch (const levelray::Error& error) {
+    CHECK(error.kind() == levelray::ErrorKind::limit);
+    CHECK_THAT(error.what(), Catch::Contains("ball.obj"));
+  }
+  CHECK(frames.load(frames.input_paths(), std::uint64_t{1} << 40, 60)->bytes > 0);
 }

@@ -50,7 +50,7 @@ TEST_CASE("convert and render go through sequences, and tell every frame on a li
   CHECK(summary["failed"].empty());
   CHECK(summary["frames_per_minute"] > 0);
   CHECK(summary["peak_memory"] > 1000000);
-  CHECK(lines[3]["camera_frame"] == 1);
+  CHECK(lines[3]["camera_frames"] == Json({1, 3, 2}));
   CHECK(lines[3]["options"]["frames"] == "1-3x2,2");
 }
 
@@ -58,10 +58,10 @@ TEST_CASE("a frame of a sequence has the same bytes whatever else is rendered") 
   const TemporaryFolder in, all, some;
   write_boxes(in, 1, 6);
   CHECK(run_program(render_boxes(in, all, "1-6") + Arguments{"--ground", "-j", "1"}).code == 0);
-  const RunResult part =
-      run_program(render_boxes(in, some, "5,3") + Arguments{"--ground", "--camera-frame", "1", "-j", "2"});
+  const RunResult part = run_program(render_boxes(in, some, "5,3") +
+                                     Arguments{"--ground", "--camera-frames", "1,3,6", "-j", "2"});
   CHECK(part.code == 0);
-  CHECK_THAT(part.out, Catch::Contains("camera and ground: by frame 1"));
+  CHECK_THAT(part.out, Catch::Contains("camera and ground: by frames 1, 3, 6"));
   for (const char* name : {"x.0003.exr", "x.0005.exr"})
     CHECK((content_of(all / name) == content_of(some / name)));
   CHECK((content_of(all / "x.0003.exr") != content_of(all / "x.0005.exr")));
@@ -95,7 +95,7 @@ TEST_CASE("frames, patterns and outputs that cannot be meant end with 2 before a
       {{"render", in, "-f", "1-3", "-o", out, "--turntable", "3"}, "round one input"},
       {{"render", in, "-f", "1-3", "-o", out, "--movie", folder / "x.gif"}, "unknown movie extension"},
       {{"render", in, "-f", "1-3", "-o", out, "--movie", folder / "x.mp4", "--fps", "0"}, "--fps 0"},
-      {{"render", in, "-f", "1-3", "-o", out, "--camera-frame", "x"}, "--camera-frame"},
+      {{"render", in, "-f", "1-3", "-o", out, "--camera-frames", "x"}, "--camera-frames"},
       {{"convert", in, folder / "x.vdb", "-f", "1-3"}, "one file for 3 frames"},
       {{"convert", in, folder / "x.vdb"}, "found 1-3"},
       {{"render", in, "-f", "7-9", "-o", out}, "found 1-3", 3},
@@ -163,7 +163,7 @@ TEST_CASE("missing inputs are errors, skipped or held") {
     CHECK(out.names().size() == 6);
     // The frames that are held begin where -f does not.
     const TemporaryFolder part;
-    CHECK(run_program(render_boxes(in, part, "3") + Arguments{"--missing", "hold", "--camera-frame", "1"})
+    CHECK(run_program(render_boxes(in, part, "3") + Arguments{"--missing", "hold", "--camera-frames", "1-6"})
               .code == 0);
     CHECK((content_of(part / "x.0003.exr") == content_of(out / "x.0003.exr")));
   }

@@ -65,8 +65,9 @@ TEST_CASE("frames that are loaded already are rendered at nine tenths of the tra
   REQUIRE(run_program({"convert", in / "ball.obj", in / "b.vdb", "--resolution", "200"}).code == 0);
   const Arguments picture{"--size", "256x256", "--samples", "4", "--shadows"};
   const int frames = 40;
-  double best = 0;
-  // Other processes disturb either measurement: the best of some rounds counts, each with its own yardstick.
+  std::vector<double> rates;
+  // Other processes disturb either measurement: the median of some rounds counts, each with its own
+  // yardstick.
   const int rounds = long_tests() ? 5 : 1;
   for (int round = 0; round < rounds; ++round) {
     const Arguments alone_job =
@@ -80,12 +81,14 @@ TEST_CASE("frames that are loaded already are rendered at nine tenths of the tra
         Arguments{"render", in / "b.vdb", "-o", out / "x.####.exr", "--turntable", std::to_string(frames)} +
         picture);
     const double sequence_ms = 60e3 / lines.back()["summary"]["frames_per_minute"].get<double>();
-    best = std::max(best, alone_ms / sequence_ms);
+    rates.push_back(alone_ms / sequence_ms);
     WARN("tracing and shading alone " << alone_ms << " ms, in a sequence " << sequence_ms
                                       << " ms a frame: " << 100 * alone_ms / sequence_ms << " %");
   }
+  std::sort(rates.begin(), rates.end());
+  const double median = rates[rates.size() / 2];
   if (long_tests())
-    CHECK(best >= 0.9);
+    CHECK(median >= 0.9);
   else
-    CHECK(best > 0.3); // a machine that does other things at the same time tells no more
+    CHECK(median > 0.3); // a machine that does other things at the same time tells no more
 }

@@ -24,6 +24,43 @@ double tan_half(double fov_degrees) {
   return std::tan(fov_degrees * (std::numbers::pi / 360.0));
 }
 
+// Where a framing camera looks from, and along what it has to know objects.
+struct FramingView {
+  CameraSettings
+      settings; // target in the origin, eye at distance 1: far from the origin that would be rounded away
+  std::array<Vec3d, 4> directions;
+};
+
+FramingView framing_view(int width, int height, double fov_degrees, const Vec3d& up) {
+  if (!(up.length() > 0) || !is_finite(up)) throw Error(ErrorKind::usage, "camera: --up has no direction");
+  FramingView result;
+  CameraSettings& settings = result.settings;
+  settings.width = width;
+  settings.height = height;
+  settings.fov_degrees = fov_degrees;
+  settings.up = up.normalized();
+
+  // Look from the front, 30 degrees to its right and 25 degrees above the horizon.
+  const int axis = major_axis(settings.up);
+  Vec3d front = axis == 2 ? Vec3d(0, -1, 0) : Vec3d(0, 0, 1);
+  front = (front - settings.up * front.dot(settings.up)).normalized();
+  const Vec3d side = settings.up.cross(front);
+  const double azimuth = 30 * std::numbers::pi / 180, elevation = 25 * std::numbers::pi / 180;
+  settings.target = Vec3d(0);
+  settings.eye = (front * std::cos(azimuth) + side * std::sin(azimuth)) * std::cos(elevation) +
+                 settings.up * std::sin(elevation);
+  const Camera view(settings);
+
+  // A point at (x, y, z) from the centre, in camera axes, is seen within the usable half angles of tangents k
+  // from distance D when |x| <= k_x (D + z) and |y| <= k_y (D + z): D is the largest of four linear
+  // functions.
+  const double margin = 0.95;
+  const double k_y = tan_half(fov_degrees) * margin, k_x = k_y * width / height;
+  result.directions = {view.right() / k_x - view.forward(), -view.right() / k_x - view.forward(),
+                       view.up() / k_y - view.forward(), -view.up() / k_y - view.forward()};
+  return result;
+}
+
 } // namespace
 
 Camera::Camera(const CameraSettings& settings)
@@ -81,58 +118,35 @@ Matrix44d Camera::world_to_ndc() const {
   return world_to_camera() * projection;
 }
 
-CameraSettings framing_camera(const SupportFunction& support, const Vec3d& centre, int width, int height,
-                              double fov_degrees, const Vec3d& up) {
-  if (!(up.length() > 0) || !is_finite(up)) throw Error(ErrorKind::usage, "camera: --up has no direction");
-  CameraSettings settings;
-  settings.width = width;
-  settings.height = height;
-  settings.fov_degrees = fov_degrees;
-  settings.up = up.normalized();
+std::array<Vec3d, 4> framing_directions(int width, int height, double fov_degrees, const Vec3d& up) {
+  return framing_view(width, height, fov_degrees, up).directions;
+}
 
-  // Look from the front, 30 degrees to its right and 25 degrees above the horizon.
-  const int axis = major_axis(settings.up);
-  Vec3d front = axis == 2 ? Vec3d(0, -1, 0) : Vec3d(0, 0, 1);
-  front = (front - settings.up * front.dot(settings.up)).normalized();
-  const Vec3d side = settings.up.cross(front);
-  const double azimuth = 30 * std::numbers::pi / 180, elevation = 25 * std::numbers::pi / 180;
-  const Vec3d to_eye = (front * std::cos(azimuth) + side * std::sin(azimuth)) * std::cos(elevation) +
-                       settings.up * std::sin(elevation);
-
-  // The axes do not depend on the place; far from the origin a unit step to the eye would be rounded away.
-  settings.target = Vec3d(0);
-  settings.eye = to_eye;
-  const Camera view(settings);
-  settings.target = centre;
-
-  // A point at (x, y, z) from the centre, in camera axes, is seen within the usable half angles of tangents k
-  // from distance D when |x| <= k_x (D + z) and |y| <= k_y (D + z): D is the largest of four linear
-  // functions.
-  const double margin = 0.95;
-  const double k_y = tan_half(fov_degrees) * margin, k_x = k_y * width / height;
-  const Vec3d directions[4] = {view.right() / k_x - view.forward(), -view.right() / k_x - view.forward(),
-                               view.up() / k_y - view.forward(), -view.up() / k_y - view.forward()};
-  const std::vector<double> farthest = support(directions);
+CameraSettings framing_camera(const std::array<double, 4>& support, const Vec3d& centre, int width,
+                              int height, double fov_degrees, const Vec3d& up) {
+  const FramingView view = framing_view(width, height, fov_degrees, up);
   double distance = 0;
-  for (int i = 0; i < 4; ++i)
-    distance = std::max(distance, farthest[static_cast<std::size_t>(i)] - centre.dot(directions[i]));
+  for (std::size_t i = 0; i < support.size(); ++i)
+    distance = std::max(distance, support[i] - centre.dot(view.directions[i]));
   // Rounding of the dot products leaves something of order 1e-16 times the coordinates for a single point.
   const double least = 1e-12 * centre.length();
-  settings.eye = centre + to_eye * (distance > least ? distance : 1);
+  CameraSettings settings = view.settings;
+  settings.target = centre;
+  settings.eye = centre + view.settings.eye * (distance > least ? distance : 1);
   return settings;
 }
 
 CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees,
                               const Vec3d& up) {
   if (bounds.isEmpty()) return framing_camera(Box3d(Vec3d(0, 0, 0)), width, height, fov_degrees, up);
-  const SupportFunction support = [&](std::span<const Vec3d> directions) {
-    std::vector<double> largest;
-    for (const Vec3d& d : directions)
-      largest.push_back(Vec3d(d.x > 0 ? bounds.max.x : bounds.min.x, d.y > 0 ? bounds.max.y : bounds.min.y,
-                              d.z > 0 ? bounds.max.z : bounds.min.z)
-                            .dot(d));
-    return largest;
-  };
+  std::array<double, 4> support;
+  const std::array<Vec3d, 4> directions = framing_directions(width, height, fov_degrees, up);
+  for (std::size_t i = 0; i < support.size(); ++i) {
+    const Vec3d& d = directions[i];
+    support[i] = Vec3d(d.x > 0 ? bounds.max.x : bounds.min.x, d.y > 0 ? bounds.max.y : bounds.min.y,
+                       d.z > 0 ? bounds.max.z : bounds.min.z)
+                     .dot(d);
+  }
   return framing_camera(support, bounds.min + (bounds.max - bounds.min) * 0.5, width, height, fov_degrees,
                         up);
 }

@@ -3,9 +3,7 @@
 
 #include "levelray/core/ray.hpp"
 
-#include <functional>
-#include <span>
-#include <vector>
+#include <array>
 
 namespace levelray {
 
@@ -43,15 +41,17 @@ class Camera {
   double half_height_;         // tan(fov/2): half the image's height at unit distance
 };
 
-// For each direction d, the largest dot(p, d) of an object's points p.
-using SupportFunction = std::function<std::vector<double>(std::span<const Vec3d>)>;
+// The directions d along which framing_camera has to know an object: the largest dot(p, d) of its points p,
+// which is called its support. They depend on the view alone. Throws Error(usage) for an `up` without
+// direction.
+std::array<Vec3d, 4> framing_directions(int width, int height, double fov_degrees, const Vec3d& up);
 
 // A camera that looks at `centre` from the front, slightly right and above, and sees all of the object, as
 // large as fits into 95% of the image. `up` points up in the picture; the front is +z when y is up and -y
 // when z is up (the conventions of modelling programs). Objects of no extent are seen from a distance of 1.
 // Throws Error(usage) for an `up` without direction.
-CameraSettings framing_camera(const SupportFunction& support, const Vec3d& centre, int width, int height,
-                              double fov_degrees = 45, const Vec3d& up = Vec3d(0, 1, 0));
+CameraSettings framing_camera(const std::array<double, 4>& support, const Vec3d& centre, int width,
+                              int height, double fov_degrees = 45, const Vec3d& up = Vec3d(0, 1, 0));
 // The same of a box.
 CameraSettings framing_camera(const Box3d& bounds, int width, int height, double fov_degrees = 45,
                               const Vec3d& up = Vec3d(0, 1, 0));
