@@ -28,12 +28,8 @@ std::string MeshFrames::settings(int) const {
 
 std::shared_ptr<const LoadedFrame> MeshFrames::load(const std::vector<std::string>& paths,
                                                     std::uint64_t memory, double seconds) const {
-  InputOptions input = input_;
-  input.path = paths.front();
-  input.max_memory = std::to_string(std::max<std::uint64_t>(memory, 1)); // 0 would mean no limit
-  input.read_timeout = std::min(input.read_timeout, seconds);
-  CommonOptions silent;
-  silent.quiet = silent.keep_warnings = true;
+  const InputOptions input = input_.of_frame(paths.front(), memory, seconds);
+  const CommonOptions silent = CommonOptions::silent();
   Progress none(true);
   auto loaded = std::make_shared<LoadedMeshGrid>();
   loaded->file = is_vdb(input.path) ? load_grid(input, conversion_, silent, none)

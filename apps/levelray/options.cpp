@@ -99,6 +99,15 @@ Json InputOptions::lasting_json() const {
   return lasting;
 }
 
+InputOptions InputOptions::of_frame(const std::string& frame_path, std::uint64_t memory,
+                                    double seconds) const {
+  InputOptions frame = *this;
+  frame.path = frame_path;
+  frame.max_memory = std::to_string(std::max<std::uint64_t>(memory, 1)); // 0 would mean no limit
+  frame.read_timeout = std::min(frame.read_timeout, seconds);
+  return frame;
+}
+
 std::uint64_t InputOptions::memory_limit() const {
   constexpr std::uint64_t unlimited = std::uint64_t{1} << 62; // leaves room for sums
   if (!max_memory.empty()) {

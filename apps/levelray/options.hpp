@@ -22,6 +22,7 @@ struct CommonOptions {
   bool quiet = false;
   std::string json;           // a path, "-" for standard output, or empty
   bool keep_warnings = false; // no option: the caller tells the warnings of what it loads
+  static CommonOptions silent() { return {.quiet = true, .keep_warnings = true}; }
 
   void add_to(CLI::App& command);
   // Results for people go to standard output, unless JSON does or nothing shall.
@@ -39,6 +40,8 @@ struct InputOptions {
   VdbReadOptions vdb_options() const; // how to read it as it is
   Json json() const;                  // as given
   Json lasting_json() const;          // of it, what may decide what is read: neither the path nor limits
+  // The same for one file of many, of which no more than this is left: bytes of memory, seconds.
+  InputOptions of_frame(const std::string& frame_path, std::uint64_t memory, double seconds) const;
   // In bytes: as given (0: no limit, a number beyond all machines), or four fifths of the machine's memory.
   std::uint64_t memory_limit() const;
 };

@@ -54,12 +54,8 @@ std::shared_ptr<const SceneFrames::Loaded> SceneFrames::load_file(std::size_t in
     throw Error(ErrorKind::usage,
                 fmt::format("{}: {} is {}; use the key \"{}\"", file.place, printable(path, 250),
                             file.is_mesh ? "a level set" : "no .vdb", file.is_mesh ? "level_set" : "mesh"));
-  InputOptions input = input_of(file, input_);
-  input.path = path;
-  input.max_memory = std::to_string(std::max<std::uint64_t>(memory, 1)); // 0 would mean no limit
-  input.read_timeout = std::min(input.read_timeout, seconds);
-  CommonOptions silent;
-  silent.quiet = silent.keep_warnings = true;
+  const InputOptions input = input_of(file, input_).of_frame(path, memory, seconds);
+  const CommonOptions silent = CommonOptions::silent();
   Progress none(true);
   try {
     loaded->file = load_grid(input, conversion_of(file), silent, none);
