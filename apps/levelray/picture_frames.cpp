@@ -18,10 +18,11 @@ namespace {
 
 constexpr const char* channel_comments =
     "R, G, B premultiplied by A, scene-linear. Z: depth along the view axis; t: distance along the ray; P, "
-    "N: world "
-    "position and unit outward normal; steps, tests, interpolations, samples: work done for the ray; "
-    "shadow_steps, shadow_tests: for the rays towards lights, per sample. AOVs are of the pixel's centre, "
-    "unfiltered. Where A is 0: Z = t = 1e30, P = N = 0.";
+    "N: "
+    "world position and unit outward normal; id: the number of the object, or of the ground; steps, tests, "
+    "interpolations, samples: work done for the ray; shadow_steps, shadow_tests: for the rays towards "
+    "lights, "
+    "per sample. AOVs are of the pixel's centre, unfiltered. Where A is 0: Z = t = 1e30, P = N = id = 0.";
 
 struct LoadedSurface : LoadedFrame {
   LoadedGrid file;
