@@ -31,6 +31,10 @@ SurfaceBlocks::SurfaceBlocks(const BlockGrid& grid) {
   parallel_for(nodes_.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) copy_samples(grid, n, grid.nodes[sources_[n]]);
   });
+  float largest_error = 0;
+  for (std::size_t b = 0; b < cells_.size(); ++b)
+    largest_error = std::max(largest_error, record(b)[record_error]);
+  largest_sample_ = largest_error * 0x1p20f * (1 + 0x1p-22f); // the sum in copy_samples may be rounded down
   parallel_for(8, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t octant = begin; octant < end; ++octant) compute_leaps(static_cast<int>(octant));
   });

@@ -49,6 +49,8 @@ class SurfaceBlocks {
   const Node& node(std::size_t at) const { return nodes_[table_[at]]; }
 
   std::size_t block_count() const { return cells_.size(); }
+  // At least all samples' absolute values.
+  float largest_sample() const { return largest_sample_; }
   std::uint64_t cells(std::size_t block) const { return cells_[block]; }
   const float* record(std::size_t block) const { return &records_[block * record_floats]; }
   // The record of the block that holds a cell, or null where the surface crosses no cell of that block.
@@ -73,6 +75,7 @@ class SurfaceBlocks {
   void copy_samples(const BlockGrid& grid, std::size_t node, const BlockGrid::Node& source);
   void compute_leaps(int octant);
 
+  float largest_sample_ = 0;
   Vec3i node_min_{0, 0, 0}, node_dims_{0, 0, 0}, block_min_{0, 0, 0}, block_end_{0, 0, 0};
   std::vector<std::uint32_t> table_; // node index; meaningless where leap > 0
   std::vector<Node> nodes_;

@@ -37,14 +37,22 @@ double local_minimum(const Bernstein<double>& f) {
 
 } // namespace
 
+double Exact::local_minimum(const Bernstein<double>& f) {
+  return levelray::local_minimum(f);
+}
+
+double Exact::evaluate(const Bernstein<double>& f, double s) {
+  return levelray::evaluate(f, s);
+}
+
 double Exact::last_of_bracket(const Bernstein<double>& f) {
   if (!(f.start > 0)) return 0;
   const bool ends = f.end <= 0;
   // One change of sign: one root. A minimum can only matter where the middle coefficients dip and come back.
   if (ends && (f.sum1 > 0 || f.sum2 <= 0)) return 1;
   if (!ends && f.sum1 > 0 && f.sum2 > 0) return -1;
-  const double minimum = local_minimum(f);
-  if (minimum > 0 && evaluate(f, minimum) <= 0) return minimum;
+  const double minimum = levelray::local_minimum(f);
+  if (minimum > 0 && levelray::evaluate(f, minimum) <= 0) return minimum;
   return ends ? 1 : -1;
 }
 

@@ -49,6 +49,11 @@ struct Exact {
   // The end of a bracket [0, end] that holds exactly one root of f, 0 where f(0) <= 0 already, or -1 where f
   // has no root in [0,1].
   static double last_of_bracket(const Bernstein<double>& f);
+  // The root in the bracket [0, last], f(0) > 0 >= f(last), or 0 where last is.
+  static void polish(const Bernstein<double>& f, double last, CellRoot& root);
+  // Where the cubic has its local minimum, if that is in (0,1); else -1.
+  static double local_minimum(const Bernstein<double>& f);
+  static double evaluate(const Bernstein<double>& f, double s);
 
  private:
   // All coefficients positive, by float arithmetic with its error bound.
@@ -62,7 +67,6 @@ struct Exact {
     const Bernstein<double> f = bernstein_along<double>(segment);
     return {f.start * side, f.sum1 * side, f.sum2 * side, f.end * side};
   }
-  static void polish(const Bernstein<double>& f, double last, CellRoot& root);
 };
 
 } // namespace levelray

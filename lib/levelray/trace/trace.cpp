@@ -4,40 +4,15 @@
 #include "levelray/accel/occluder_walk.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/intersect/intersectors.hpp"
+#include "levelray/trace/grid_cell.hpp"
 #include "levelray/trace/level_set.hpp"
+#include "levelray/trace/starting_side.hpp"
 
 #include <cassert>
 
 namespace levelray {
 
 namespace {
-
-// On which side a ray begins: known where it comes in through the hull of the box, else decided by the first
-// surface cell on its way, at whose beginning the value still has the sign of the ray's beginning (cells
-// without the bit do not change it). On the surface itself either will do: it is hit there.
-class StartingSide {
- public:
-  explicit StartingSide(const RayFrame& ray) : side_(ray.from_outside ? 1 : 0) {}
-
-  double at_first(const CellSegment& segment) {
-    if (side_ == 0) side_ = interpolate(segment.corner, segment.in) < 0 ? -1 : 1;
-    return side_;
-  }
-  bool inside() const { return side_ < 0; }
-  int interpolations() const { return side_ == 0; } // that the first cell will take
-
- private:
-  double side_;
-};
-
-Vec3i grid_cell(const SurfaceBlocks& surface, const RayFrame& ray, const int (&position)[3]) {
-  Vec3i cell;
-  for (int a = 0; a < 3; ++a) {
-    const int low = surface.node_min()[a] * node_dim, size = surface.node_dims()[a] * node_dim;
-    cell[a] = low + (ray.octant >> a & 1 ? size - 1 - position[a] : position[a]);
-  }
-  return cell;
-}
 
 template <class Work>
 void for_intersector(std::string_view name, Work&& work) {
