@@ -16,5 +16,7 @@ void add_compare(CLI::App& program, Work& run);
 // `farmed`: the command line behind "--".
 void add_farm(CLI::App& program, Work& run, const std::vector<std::string>& farmed);
 void add_scene(CLI::App& program, Work& run);
+// `command_line`: the whole of it, for the report.
+void add_measure(CLI::App& program, Work& run, const std::vector<std::string>& command_line);
 
 } // namespace levelray

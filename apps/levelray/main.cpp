@@ -109,6 +109,7 @@ std::vector<std::string> take_farmed_command(int& argc, char** argv) {
 }
 
 void run(int argc, char** argv) {
+  const std::vector<std::string> command_line(argv, argv + argc);
   const std::vector<std::string> farmed = take_farmed_command(argc, argv);
   CLI::App program("", "levelray");
   program.footer(examples);
@@ -119,6 +120,7 @@ void run(int argc, char** argv) {
   add_compare(program, work);
   add_farm(program, work, farmed);
   add_scene(program, work);
+  add_measure(program, work, command_line);
   program.require_subcommand(1);
   program.set_version_flag("--version", version_text);
   for (CLI::App* command : program.get_subcommands({})) command->set_version_flag("--version", version_text);

@@ -92,7 +92,7 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
   const BlockGrid grid = mesh_to_grid(prepare_mesh(mesh), options).grid;
   const double voxel = grid.transform.voxel_size;
   const Camera camera = test::study_camera(setup.image_size);
-  const auto pixels = test::study_pixels(setup.image_size);
+  const auto pixels = tiled_pixels(setup.image_size);
   const std::vector<WorldRay> rays = test::study_rays(setup.image_size);
   PinholeView view{camera.settings().eye, camera.right(), camera.up(), camera.forward()};
   view.half_width = view.half_height = camera.half_height();

@@ -2,11 +2,11 @@
 // (0.35, 0.30, 1) through 45 degrees.
 #pragma once
 
+#include "levelray/measure/ray_sets.hpp"
 #include "levelray/mesh/triangle_mesh.hpp"
 #include "levelray/render/camera.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace levelray::test {
@@ -29,28 +29,9 @@ inline Camera study_camera(int size) {
   return Camera(settings);
 }
 
-// The centre of each pixel of a square image. They follow each other in 32x32 tiles, and in them in squares
-// of 4x4 pixels, so that runs of 1024 and of 16 are coherent; the last tiles of sizes that are no multiple of
-// 32 are smaller.
-inline std::vector<std::array<double, 2>> study_pixels(int size) {
-  constexpr int tile = 32, square = 4;
-  std::vector<std::array<double, 2>> pixels;
-  pixels.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
-  for (int ty = 0; ty < size; ty += tile)
-    for (int tx = 0; tx < size; tx += tile)
-      for (int qy = ty; qy < std::min(ty + tile, size); qy += square)
-        for (int qx = tx; qx < std::min(tx + tile, size); qx += square)
-          for (int y = qy; y < std::min(qy + square, size); ++y)
-            for (int x = qx; x < std::min(qx + square, size); ++x) pixels.push_back({x + 0.5, y + 0.5});
-  return pixels;
-}
-
-// The rays through them, unit directions.
+// The rays through its pixels in coherent order (tiled_pixels), unit directions.
 inline std::vector<WorldRay> study_rays(int size) {
-  const Camera camera = study_camera(size);
-  std::vector<WorldRay> rays;
-  for (const auto& [x, y] : study_pixels(size)) rays.push_back(camera.ray(x, y));
-  return rays;
+  return primary_rays(study_camera(size));
 }
 
 } // namespace levelray::test

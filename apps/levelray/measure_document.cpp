@@ -1,0 +1,112 @@
+#include "measure_document.hpp"
+
+#include "measure_page_generated.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace levelray {
+
+Table::Table(const std::string& id, const std::string& title, std::vector<Column> columns) {
+  json_ = {{"id", id}, {"title", title}, {"columns", Json::array()}, {"rows", Json::array()}};
+  for (const Column& c : columns)
+    json_["columns"].push_back(
+        {{"key", c.key}, {"title", c.title}, {"digits", c.digits}, {"fault", c.fault}});
+}
+
+void Table::add(Json::array_t row) {
+  assert(row.size() == json_["columns"].size());
+  json_["rows"].push_back(std::move(row));
+}
+
+LogLogPlot::LogLogPlot(const std::string& id, const std::string& title, const std::string& x,
+                       const std::string& y) {
+  json_ = {{"id", id}, {"title", title}, {"x", x}, {"y", y}, {"series", Json::array()}};
+}
+
+void LogLogPlot::add(const std::string& name, double slope, const std::vector<double>& x,
+                     const std::vector<double>& y) {
+  Json points = Json::array();
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (x[i] > 0 && y[i] > 0 && std::isfinite(y[i])) points.push_back({x[i], y[i]});
+  json_["series"].push_back({{"name", name}, {"slope", finite_json(slope)}, {"points", std::move(points)}});
+}
+
+Json finite_json(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+namespace {
+
+std::string cell_text(const Json& value, int digits) {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return fmt::format("{}", value.get<std::int64_t>());
+  return fmt::format("{:.{}g}", value.get<double>(), digits);
+}
+
+std::string table_text(const Json& table) {
+  const Json& columns = table["columns"];
+  std::vector<std::vector<std::string>> lines{{}};
+  for (const Json& column : columns) lines[0].push_back(column["title"]);
+  for (const Json& row : table["rows"]) {
+    lines.emplace_back();
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      lines.back().push_back(cell_text(row[i], columns[i]["digits"]));
+  }
+  std::string text = table["title"].get<std::string>() + "\n";
+  std::vector<std::size_t> widths(columns.size());
+  for (const auto& line : lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  for (const auto& line : lines) {
+    std::string row;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const bool left = !table["rows"].empty() && table["rows"][0][i].is_string();
+      row += left ? fmt::format("{}{:<{}}", i ? "  " : "", line[i], widths[i])
+                  : fmt::format("{}{:>{}}", i ? "  " : "", line[i], widths[i]);
+    }
+    row.erase(row.find_last_not_of(' ') + 1);
+    text += row + "\n";
+  }
+  return text;
+}
+
+} // namespace
+
+std::string document_text(const Json& document) {
+  std::string text = document["title"].get<std::string>() + "\n";
+  const auto list = [&](const char* key, const std::string& title) {
+    if (document[key].empty()) return;
+    text += "\n" + title + "\n";
+    for (const Json& line : document[key]) text += "  " + line.get<std::string>() + "\n";
+  };
+  list("failures", "Failures");
+  list("findings", "Findings");
+  for (const Json& section : document["sections"])
+    for (const Json& table : section["tables"]) text += "\n" + table_text(table);
+  return text;
+}
+
+std::string document_page(const Json& document) {
+  // Inside a script element "</" would end it, and "<!--" begin a comment.
+  std::string data = document.dump(-1, ' ', true, Json::error_handler_t::replace), safe;
+  safe.reserve(data.size());
+  for (const char c : data) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  std::string title;
+  for (const char c : document["title"].get<std::string>())
+    title += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
+
+  std::string page = measure_page;
+  const auto put = [&](const std::string& mark, const std::string& text) {
+    const std::size_t at = page.find(mark);
+    assert(at != std::string::npos);
+    page.replace(at, mark.size(), text);
+  };
+  put("{{title}}", title);
+  put("{{data}}", safe);
+  return page;
+}
+
+} // namespace levelray

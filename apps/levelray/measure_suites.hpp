@@ -1,0 +1,41 @@
+// The suites of `levelray measure`: each has a file of its own and a line in the list.
+#pragma once
+
+#include "console.hpp"
+#include "options.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace levelray {
+
+// As given; what a suite does not know of, it leaves alone.
+struct MeasureOptions {
+  CommonOptions common;
+  std::string suite, report, resolutions, shapes, band = "3vx";
+  std::size_t rays = 8192;
+  std::uint64_t seed = 1;
+  int repeat = 3;
+};
+
+struct MeasureSuite {
+  const char* name;
+  const char* help;
+  // Measures, and fills in everything of the document (measure_document.hpp) but command, version and
+  // machine.
+  void (*run)(const MeasureOptions& options, Progress& progress, Json& document);
+};
+
+void measure_analytic(const MeasureOptions& options, Progress& progress, Json& document);
+
+inline const std::vector<MeasureSuite>& measure_suites() {
+  static const std::vector<MeasureSuite> suites{
+      {"analytic", "shapes whose distance, hits and normals are known without a grid", measure_analytic}};
+  return suites;
+}
+
+// "32,64,128": whole numbers. Throws Error(usage), naming the option.
+std::vector<int> parse_counts(const std::string& option, const std::string& text, int least, int most);
+
+} // namespace levelray

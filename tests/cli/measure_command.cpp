@@ -1,0 +1,107 @@
+// levelray measure: documents, pages, exit codes.
+#include "support/catch.hpp"
+#include "support/read_output.hpp"
+#include "support/run_program.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+using namespace levelray::test;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const std::vector<std::string> small{"measure",  "--suite",     "analytic", "--resolution", "12,20",
+                                     "--shapes", "sphere,slab", "--rays",   "300",          "--repeat",
+                                     "1"};
+
+RunResult measure(std::vector<std::string> more) {
+  more.insert(more.begin(), small.begin(), small.end());
+  return run_program(more);
+}
+
+std::string content(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+} // namespace
+
+TEST_CASE("measure prints tables, and writes all of it as JSON and as a page") {
+  const TemporaryFolder folder;
+  const RunResult run = measure({"--json", folder / "m.json", "--report", folder / "m.html"});
+  INFO(run.err);
+  REQUIRE(run.code == 0);
+  CHECK_THAT(run.out, Catch::Contains("Hits of intersectors") && Catch::Contains("false-position-4") &&
+                          Catch::Contains("Slopes of log(error)"));
+  const Json json = Json::parse(content(folder / "m.json"));
+  CHECK(json["suite"] == "analytic");
+  CHECK_THAT(json["command"].get<std::string>(),
+             Catch::Contains("measure --suite analytic --resolution 12,20"));
+  CHECK(json["machine"]["hardware_threads"].get<int>() > 0);
+  CHECK(json["options"]["seed"] == 1);
+  CHECK(json["options"]["resolution"] == Json({12, 20}));
+  CHECK(json["failures"].empty());
+  std::size_t tables = 0, plots = 0;
+  for (const Json& section : json["sections"]) {
+    plots += section["plots"].size();
+    for (const Json& table : section["tables"]) {
+      ++tables;
+      REQUIRE(!table["rows"].empty());
+      for (const Json& row : table["rows"]) CHECK(row.size() == table["columns"].size());
+    }
+  }
+  CHECK(tables == 5);
+  CHECK(plots == 2 * 2);
+
+  const std::string page = content(folder / "m.html");
+  const std::string begin = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t at = page.find(begin);
+  REQUIRE(at != std::string::npos);
+  const std::size_t end = page.find("</script>", at);
+  CHECK(Json::parse(page.substr(at + begin.size(), end - at - begin.size())) == json);
+  CHECK(page.find("{{") == std::string::npos);
+  // Nothing to load from anywhere; the one address is the name of SVG.
+  for (std::size_t i = page.find("http"); i != std::string::npos; i = page.find("http", i + 1))
+    CHECK((page.compare(i, 26, "http://www.w3.org/2000/svg") == 0 || page.compare(i, 10, "http-equiv") == 0));
+  CHECK(page.find("src=") == std::string::npos);
+}
+
+TEST_CASE("measure gives JSON alone on standard output, and the same numbers again but for times") {
+  const auto numbers = [](const RunResult& run) {
+    Json json = Json::parse(run.out);
+    for (const char* key : {"seconds", "machine", "command"}) json.erase(key);
+    for (Json& section : json["sections"])
+      for (Json& table : section["tables"])
+        for (std::size_t c = 0; c < table["columns"].size(); ++c)
+          if (table["columns"][c]["key"].get<std::string>().find("ns") != std::string::npos)
+            for (Json& row : table["rows"]) row[c] = 0;
+    return json;
+  };
+  const RunResult first = measure({"--json", "-"}), again = measure({"--json", "-", "-j", "1"});
+  REQUIRE(first.code == 0);
+  CHECK(numbers(first) == numbers(again));
+  CHECK(numbers(measure({"--json", "-", "--seed", "2"})) != numbers(first));
+}
+
+TEST_CASE("measure says what was wrong with its options, and leaves no files then") {
+  const TemporaryFolder folder;
+  const auto refused = [](const std::vector<std::string>& arguments, const std::string& text) {
+    const RunResult run = run_program(arguments);
+    CHECK(run.code == 2);
+    CHECK_THAT(run.err, Catch::Contains(text));
+  };
+  refused({"measure"}, "measure needs --suite: analytic");
+  refused({"measure", "--suite", "analitic"}, "analytic");
+  refused({"measure", "--suite", "analytic", "--shapes", "cube"},
+          "unknown shape 'cube'; there are sphere, torus");
+  refused({"measure", "--suite", "analytic", "--resolution", "32,x"},
+          "--resolution \"32,x\": must be whole numbers");
+  refused({"measure", "--suite", "analytic", "--resolution", "4"}, "from 8 to 4096");
+  refused({"measure", "--suite", "analytic", "--band", "3mm"}, "--band \"3mm\": must be 1vx to 64vx");
+  refused({"measure", "--suite", "analytic", "--report", folder / "m.txt"}, ".html");
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
