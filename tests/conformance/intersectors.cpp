@@ -1,7 +1,7 @@
 // Every intersector against one contract, and `exact` against an oracle that isolates every root.
 #include "levelray/intersect/intersectors.hpp"
 #include "support/catch.hpp"
-#include "support/reference_tracer.hpp"
+#include "support/cell_segments.hpp"
 
 #include <array>
 #include <limits>
@@ -14,47 +14,17 @@ using namespace levelray::test;
 namespace {
 
 CellPoint point(double x, double y, double z) {
-  CellPoint p;
-  const double c[3] = {x, y, z};
-  for (int a = 0; a < 3; ++a) p.x[a] = c[a], p.rest[a] = 1 - c[a];
-  return p;
+  return cell_point(x, y, z);
 }
 
 CellSegment segment(const std::array<float, 8>& corner, CellPoint in, CellPoint out) {
-  CellSegment s;
-  float largest = 0;
-  for (int c = 0; c < 8; ++c) {
-    s.corner[c] = corner[static_cast<std::size_t>(c)];
-    largest = std::max(largest, std::fabs(s.corner[c]));
-  }
-  s.error = largest * 0x1p-20f + 0x1p-120f; // as SurfaceBlocks sets it
-  s.in = in;
-  s.out = out;
-  return s;
+  return cell_segment(corner, in, out);
 }
 
 // f = x - at, along x through the middle of the cell.
 CellSegment ramp(float low, float high) {
   return segment({low, high, low, high, low, high, low, high}, point(0, 0.5, 0.5), point(1, 0.5, 0.5));
 }
-
-// The segment's cubic in s from 0 to 1, and what its values may be off by when computed in double: the bound
-// of bernstein.hpp, 16 * 2^-53 of the largest corner, and as much again for evaluating it at the minimum.
-struct Oracle {
-  CellCubic cubic;
-  Real doubt;
-
-  explicit Oracle(const CellSegment& s) : cubic(make(s)) {
-    Real largest = 0;
-    for (const float c : s.corner) largest = std::max<Real>(largest, std::fabs(c));
-    doubt = 32 * 0x1p-53L * largest;
-  }
-  static CellCubic make(const CellSegment& s) {
-    Real o[3], d[3];
-    for (int a = 0; a < 3; ++a) o[a] = s.in.x[a], d[a] = Real(s.out.x[a]) - s.in.x[a];
-    return CellCubic(s.corner, o, d);
-  }
-};
 
 } // namespace
 
@@ -238,7 +208,7 @@ TEST_CASE("exact loses no root and invents none in a million random cells over 1
       for (int k = 0; k < 3; ++k) in[k] = k == axis ? 0 : in[k], out[k] = k == axis ? 1 : in[k];
     const CellSegment s = segment(corner, point(in[0], in[1], in[2]), point(out[0], out[1], out[2]));
 
-    const Oracle oracle(s);
+    const SegmentOracle oracle(s);
     const double side = interpolate(s.corner, s.in) < 0 ? -1 : 1;
     Real least = 1e60L;
     const std::optional<Real> expected = first_crossing(oracle.cubic, side, 0, 1, least);

@@ -184,8 +184,8 @@ TEST_CASE("a single cell, a full block and huge or tiny voxels can be traced") {
 
 TEST_CASE("an unknown intersector is refused with the legal names") {
   const LevelSet level_set(wall());
-  CHECK_THROWS_WITH(closest_hit(level_set, WorldRay{}, "newton"),
-                    Catch::Contains("newton") && Catch::Contains("exact") && Catch::Contains("midpoint"));
+  CHECK_THROWS_WITH(closest_hit(level_set, WorldRay{}, "bisection"),
+                    Catch::Contains("bisection") && Catch::Contains("exact") && Catch::Contains("midpoint"));
   CHECK(closest_hit(level_set, ray_from(Vec3d(9, 1.5, 2.5), Vec3d(-1, 0, 0)), "false-position").t == 3.75);
 }
 

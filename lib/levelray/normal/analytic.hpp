@@ -13,6 +13,7 @@ struct AnalyticNormal {
   static constexpr std::string_view name = "analytic";
   static constexpr std::string_view source = "Jamriska 2010, section 5";
   static constexpr int samples = 8, interpolations = 0;
+  static constexpr bool whole = false;
 
   static Vec3d gradient(const Neighbourhood& f, const CellPosition& at);
 };

@@ -3,6 +3,7 @@
 // A scheme is a struct with
 //   static constexpr std::string_view name, source;
 //   static constexpr int samples, interpolations;   // how many it reads and does
+//   static constexpr bool whole;   // it reads samples with two or three indices that are -1 or 2
 //   static Vec3d gradient(const Neighbourhood&, const CellPosition&);
 // the gradient in world units of value per voxel, whose length does not matter. It may be zero (a plateau, a
 // ridge): `unit_normal` then falls back.

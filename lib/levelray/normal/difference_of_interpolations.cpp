@@ -4,12 +4,12 @@ namespace levelray {
 
 namespace {
 
-// The trilinear interpolant at local coordinates in [-1/2, 3/2].
+// The trilinear interpolant at local coordinates in [0, 3/2], of which one at most is beyond 1.
 double interpolate(const Neighbourhood& f, const double (&p)[3]) {
   int base[3];
   double w[3];
   for (int a = 0; a < 3; ++a) {
-    base[a] = p[a] < 0 ? -1 : p[a] > 1 ? 1 : 0;
+    base[a] = p[a] > 1 ? 1 : 0;
     w[a] = p[a] - base[a];
   }
   double sum = 0;
@@ -24,13 +24,12 @@ double interpolate(const Neighbourhood& f, const double (&p)[3]) {
 } // namespace
 
 Vec3d DifferenceOfInterpolations::gradient(const Neighbourhood& f, const CellPosition& at) {
+  const double here = interpolate(f, at.local);
   Vec3d gradient;
   for (int a = 0; a < 3; ++a) {
-    double below[3] = {at.local[0], at.local[1], at.local[2]},
-           above[3] = {at.local[0], at.local[1], at.local[2]};
-    below[a] -= offset_voxels;
+    double above[3] = {at.local[0], at.local[1], at.local[2]};
     above[a] += offset_voxels;
-    gradient[a] = (interpolate(f, above) - interpolate(f, below)) / (2 * offset_voxels);
+    gradient[a] = (interpolate(f, above) - here) / offset_voxels;
   }
   return gradient;
 }

@@ -13,6 +13,7 @@ struct InterpolationOfDifferences {
   static constexpr std::string_view name = "interpolation-of-differences";
   static constexpr std::string_view source = "Jamriska 2010, section 5";
   static constexpr int samples = 32, interpolations = 1;
+  static constexpr bool whole = false;
 
   static Vec3d gradient(const Neighbourhood& f, const CellPosition& at);
 };

@@ -5,8 +5,9 @@
 
 namespace levelray {
 
-// Samples cell-1 .. cell+2 along each axis, counted from the cell's lowest corner. Normal schemes look at 32
-// of them only, those with at most one index that is -1 or 2: whoever fills a neighbourhood for them may
+// Samples cell-1 .. cell+2 along each axis, counted from the cell's lowest corner. Those that a grid does not
+// hold are worth +-background, as everywhere. Normal schemes that are not `whole` (cell_position.hpp) look at
+// 32 of them only, those with at most one index that is -1 or 2: whoever fills a neighbourhood for them may
 // leave the others as they are.
 class Neighbourhood {
  public:

@@ -4,14 +4,19 @@
 #include "levelray/core/methods.hpp"
 #include "levelray/normal/analytic.hpp"
 #include "levelray/normal/difference_of_interpolations.hpp"
+#include "levelray/normal/dual_voxel.hpp"
 #include "levelray/normal/interpolation_of_differences.hpp"
+#include "levelray/normal/offset_differences.hpp"
+#include "levelray/normal/sharp_features.hpp"
+#include "levelray/normal/tricubic_b_spline.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace levelray {
 
-using NormalSchemes = std::tuple<InterpolationOfDifferences, DifferenceOfInterpolations, AnalyticNormal>;
+using NormalSchemes = std::tuple<InterpolationOfDifferences, DifferenceOfInterpolations, AnalyticNormal,
+                                 OffsetDifferences, DualVoxel, TricubicBSpline, SharpFeatures>;
 
 // The unit normal of the scheme, towards positive values. Where its gradient is zero or not finite the
 // analytic one is taken, and where that is too (all samples around are equal), +z.

@@ -53,8 +53,47 @@ void copy_side(const LevelSet& level_set, const Vec3i& cell, const float* corner
     }
 }
 
-// Fills in the samples around a cell that normal schemes look at, from the records, which are in cache
-// because the tracer has just read them.
+// Where the four samples cell-1 .. cell+2 along an axis lie: `count` of them, from neighbourhood index
+// `first`, in the record of the block `shift` blocks away, from its index `at`. A record holds indices 0
+// .. 4.
+struct Piece {
+  int first, count, shift, at;
+};
+int pieces_along(int cell_in_block, Piece (&pieces)[2]) {
+  if (cell_in_block == 0) {
+    pieces[0] = {-1, 1, -1, block_dim - 1};
+    pieces[1] = {0, 3, 0, 0};
+    return 2;
+  }
+  pieces[0] = {-1, std::min(4, block_dim + 2 - cell_in_block), 0, cell_in_block - 1};
+  pieces[1] = {2, 1, 1, 1};
+  return cell_in_block == block_dim - 1 ? 2 : 1;
+}
+
+// Fills in all 64 samples around a cell, from the records of up to eight blocks, or from the grid where a
+// block is no surface block.
+void copy_whole(const LevelSet& level_set, const Vec3i& cell, Neighbourhood& samples) {
+  Piece pieces[3][2];
+  int count[3];
+  for (int a = 0; a < 3; ++a) count[a] = pieces_along(cell[a] & (block_dim - 1), pieces[a]);
+  for (int r = 0; r < count[2]; ++r)
+    for (int q = 0; q < count[1]; ++q)
+      for (int p = 0; p < count[0]; ++p) {
+        const Piece &x = pieces[0][p], &y = pieces[1][q], &z = pieces[2][r];
+        const Vec3i block = cell + Vec3i(x.shift, y.shift, z.shift) * block_dim;
+        const float* const record = level_set.surface().find_record(block);
+        for (int k = 0; k < z.count; ++k)
+          for (int j = 0; j < y.count; ++j)
+            for (int i = 0; i < x.count; ++i)
+              samples.at(x.first + i, y.first + j, z.first + k) =
+                  record ? record[(x.at + i) * stride[0] + (y.at + j) * stride[1] + (z.at + k) * stride[2]]
+                         : level_set.grid().value(cell.x + x.first + i, cell.y + y.first + j,
+                                                  cell.z + z.first + k);
+      }
+}
+
+// Fills in the 32 samples around a cell that most normal schemes look at, from the records, which are in
+// cache because the tracer has just read them.
 void copy_samples(const LevelSet& level_set, const Vec3i& cell, Neighbourhood& samples) {
   const float* const record = level_set.surface().find_record(cell);
   if (!record) { // no ray can have hit it
@@ -96,7 +135,10 @@ void hit_normals(const LevelSet& level_set, std::span<const WorldRay> rays, std:
         normals[i] = Vec3f(0, 0, 0);
         continue;
       }
-      copy_samples(level_set, hits[i].cell, samples);
+      if constexpr (Scheme::whole)
+        copy_whole(level_set, hits[i].cell, samples);
+      else
+        copy_samples(level_set, hits[i].cell, samples);
       normals[i] = Vec3f(unit_normal<Scheme>(samples, cell_position(origin, per_voxel, rays[i], hits[i])));
     }
   };
