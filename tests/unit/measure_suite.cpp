@@ -165,7 +165,7 @@ TEST_CASE("the analytic suite has a row for every method and finds what is known
     REQUIRE(curve.voxel_sizes.size() == 3);
     const bool second_order = curve.method == Exact::name ||
                               curve.method == InterpolationOfDifferences::name ||
-                              curve.method == DifferenceOfInterpolations::name;
+                              curve.method == OffsetDifferences::name;
     if (!second_order) continue;
     ++slopes;
     // 2 in the limit. With some hundred hits the grazing ones, whose error is that of a square root, move the
