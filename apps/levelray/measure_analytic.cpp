@@ -1,10 +1,10 @@
 // The suite `analytic` as a document: tables of solvers, normals, accelerations, slopes, and a plot of each
 // shape's errors.
+#include "measure_analytic.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/measure/analytic_suite.hpp"
 #include "measure_document.hpp"
-#include "measure_suites.hpp"
 #include "names.hpp"
 
 #include <cmath>
@@ -13,9 +13,7 @@
 
 namespace levelray {
 
-namespace {
-
-AnalyticSettings settings_of(const MeasureOptions& options) {
+AnalyticSettings analytic_settings(const MeasureOptions& options) {
   AnalyticSettings settings;
   if (!options.resolutions.empty())
     settings.resolutions = parse_counts("--resolution", options.resolutions, 8, 4096);
@@ -31,8 +29,14 @@ AnalyticSettings settings_of(const MeasureOptions& options) {
   return settings;
 }
 
-std::string where(const Sampling& at) {
-  return fmt::format("{} at {}", at.shape, at.resolution);
+Json analytic_options_json(const AnalyticSettings& settings) {
+  return {{"resolution", settings.resolutions},
+          {"shapes", settings.shapes},
+          {"band_voxels", settings.half_width_voxels},
+          {"primary_rays", settings.image_size * settings.image_size},
+          {"random_rays", settings.chords},
+          {"seed", settings.seed},
+          {"repeat", settings.repetitions}};
 }
 
 std::string faults_text(const Confusion& c) {
@@ -44,6 +48,28 @@ std::string faults_text(const Confusion& c) {
   add(c.phantoms, "phantom", "phantoms");
   add(c.wrong, "wrong surface", "wrong surfaces");
   return text;
+}
+
+Json convergence_plots(const std::vector<Convergence>& curves, const std::string& quantity,
+                       const std::string& what) {
+  std::vector<std::string> shapes;
+  for (const Convergence& c : curves)
+    if (c.quantity == quantity && (shapes.empty() || shapes.back() != c.shape)) shapes.push_back(c.shape);
+  Json plots = Json::array();
+  for (const std::string& shape : shapes) {
+    LogLogPlot plot(quantity + "-" + shape, shape, "voxel size", what);
+    for (const Convergence& c : curves)
+      if (c.shape == shape && c.quantity == quantity)
+        plot.add(c.method, c.mean_slope, c.voxel_sizes, c.means);
+    plots.push_back(plot.json());
+  }
+  return plots;
+}
+
+namespace {
+
+std::string where(const Sampling& at) {
+  return fmt::format("{} at {}", at.shape, at.resolution);
 }
 
 // What breaks a promise.
@@ -203,36 +229,15 @@ Json slope_table(const AnalyticResult& result) {
   return table.json();
 }
 
-Json convergence_plots(const AnalyticResult& result, const std::string& quantity, const std::string& what) {
-  std::vector<std::string> shapes;
-  for (const Sampling& at : result.samplings)
-    if (shapes.empty() || shapes.back() != at.shape) shapes.push_back(at.shape);
-  Json plots = Json::array();
-  for (const std::string& shape : shapes) {
-    LogLogPlot plot(quantity + "-" + shape, shape, "voxel size", what);
-    for (const Convergence& c : result.convergence)
-      if (c.shape == shape && c.quantity == quantity)
-        plot.add(c.method, c.mean_slope, c.voxel_sizes, c.means);
-    plots.push_back(plot.json());
-  }
-  return plots;
-}
-
 } // namespace
 
 void measure_analytic(const MeasureOptions& options, Progress& progress, Json& document) {
-  const AnalyticSettings settings = settings_of(options);
+  const AnalyticSettings settings = analytic_settings(options);
   progress.begin("measuring", 0, "");
   const AnalyticResult result = run_analytic_suite(settings, [&](double done) { progress.report(done); });
 
   document["title"] = "levelray measure: shapes that are known exactly";
-  document["options"] = {{"resolution", settings.resolutions},
-                         {"shapes", settings.shapes},
-                         {"band_voxels", settings.half_width_voxels},
-                         {"primary_rays", result.primary_rays},
-                         {"random_rays", result.chords},
-                         {"seed", settings.seed},
-                         {"repeat", settings.repetitions}};
+  document["options"] = analytic_options_json(settings);
   document["failures"] = failures_of(result);
   document["findings"] = findings_of(result);
   document["notes"] = {
@@ -257,14 +262,14 @@ void measure_analytic(const MeasureOptions& options, Progress& progress, Json& d
        {"title", "Hits"},
        {"text", "Mean error of t along the ray, in units of the shape, against the voxel size. Trilinear "
                 "interpolation allows a slope of 2 where the surface is smooth and resolved."},
-       {"plots", convergence_plots(result, "t", "mean |t error|")},
+       {"plots", convergence_plots(result.convergence, "t", "mean |t error|")},
        {"tables", {solver_table(result), grid_table(result)}}});
   document["sections"].push_back(
       {{"id", "normals"},
        {"title", "Normals"},
        {"text", "Mean angle between the scheme's normal and the shape's, against the voxel "
                 "size."},
-       {"plots", convergence_plots(result, "normal", "mean angle, degrees")},
+       {"plots", convergence_plots(result.convergence, "normal", "mean angle, degrees")},
        {"tables", {normal_table(result)}}});
   document["sections"].push_back(
       {{"id", "slopes"},

@@ -28,10 +28,12 @@ struct MeasureSuite {
 };
 
 void measure_analytic(const MeasureOptions& options, Progress& progress, Json& document);
+void measure_openvdb(const MeasureOptions& options, Progress& progress, Json& document);
 
 inline const std::vector<MeasureSuite>& measure_suites() {
   static const std::vector<MeasureSuite> suites{
-      {"analytic", "shapes whose distance, hits and normals are known without a grid", measure_analytic}};
+      {"analytic", "shapes whose distance, hits and normals are known without a grid", measure_analytic},
+      {"openvdb", "the same grids and rays through OpenVDB's tracer and ours", measure_openvdb}};
   return suites;
 }
 

@@ -7,10 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 using namespace levelray::test;
-using Json = nlohmann::ordered_json;
 
 namespace {
 
@@ -104,4 +102,22 @@ TEST_CASE("measure says what was wrong with its options, and leaves no files the
   refused({"measure", "--suite", "analytic", "--band", "3mm"}, "--band \"3mm\": must be 1vx to 64vx");
   refused({"measure", "--suite", "analytic", "--report", folder / "m.txt"}, ".html");
   CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("measure runs OpenVDB's tracer and converter beside ours") {
+  const RunResult run = run_program({"measure", "--suite", "openvdb", "--resolution", "16,24", "--shapes",
+                                     "sphere,slab", "--rays", "300", "--repeat", "1", "--json", "-"});
+  INFO(run.err);
+  REQUIRE(run.code == 0);
+  const Json json = Json::parse(run.out);
+  CHECK(json["failures"].empty());
+  std::vector<std::string> titles;
+  for (const Json& section : json["sections"])
+    for (const Json& table : section["tables"]) {
+      titles.push_back(table["id"]);
+      std::size_t theirs = 0;
+      for (const Json& row : table["rows"]) theirs += row[2] == "OpenVDB";
+      CHECK(theirs == (table["id"] == "converters" ? 2 : 4)); // of two shapes one is a box
+    }
+  CHECK(titles == std::vector<std::string>{"tracers", "tracers-grid", "converters"});
 }

@@ -1,7 +1,5 @@
 #include "levelray/measure/analytic_suite.hpp"
 
-#include "levelray/core/error.hpp"
-#include "levelray/core/nearest_name.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/measure/interleaved_times.hpp"
@@ -17,46 +15,27 @@ namespace levelray {
 
 namespace {
 
-constexpr std::size_t batch = 1024; // as the renderer's tiles
 constexpr int minmax_size = 128;
-
-// Calls work(begin, count) for batches of all rays.
-template <class Work>
-void in_batches(std::size_t count, Work&& work) {
-  for (std::size_t begin = 0; begin < count; begin += batch) work(begin, std::min(batch, count - begin));
-}
-
-Camera camera_of(const Reference& shape, int size) {
-  return Camera(framing_camera(shape.bounds, size, size));
-}
 
 // One shape at one resolution.
 class Round {
  public:
-  Round(const Reference& shape, int resolution, const AnalyticSettings& settings, AnalyticResult& result)
-      : shape_(shape), settings_(settings), result_(result), at_{shape.name, resolution, 1.0 / resolution},
-        grid_(shape.grid(at_.voxel_size, settings.half_width_voxels)),
-        level_set_(grid_), reference_{&shape, at_.voxel_size, static_cast<double>(grid_.background)},
-        camera_(camera_of(shape, settings.image_size)), primary_(primary_rays(camera_)),
-        chords_(random_chords(shape.bounds, settings.chords, settings.seed)) {
-    rays_ = primary_;
-    rays_.insert(rays_.end(), chords_.begin(), chords_.end());
+  Round(const SampledShape& sampled, const AnalyticSettings& settings, AnalyticResult& result)
+      : sampled_(sampled), settings_(settings), result_(result), at_(sampled.at), grid_(sampled.grid),
+        level_set_(sampled.level_set), camera_(sampled.camera), primary_(sampled.primary),
+        chords_(sampled.chords), rays_(sampled.rays), exact_(sampled.exact) {
     result.samplings.push_back(at_);
     result.primary_rays = primary_.size(), result.chords = chords_.size();
   }
 
   void run() {
-    std::vector<Chord> truth;
-    for (const WorldRay& ray : rays_) truth.push_back(shape_.chord(ray));
-    exact_.resize(rays_.size());
-    closest_hits(level_set_, rays_, Exact::name, exact_);
-    solvers(truth);
+    solvers();
     normals();
     accelerations();
   }
 
  private:
-  void solvers(const std::vector<Chord>& truth) {
+  void solvers() {
     std::vector<Hit> hits(rays_.size());
     std::vector<std::function<void()>> works;
     const std::size_t first = result_.solvers.size();
@@ -64,7 +43,7 @@ class Round {
       closest_hits(level_set_, rays_, name, hits);
       SolverRow row;
       row.at = at_, row.method = name;
-      const Judgement shape = judge_against_shape(reference_, rays_, truth, hits);
+      const Judgement shape = judge_against_shape(sampled_.reference, rays_, sampled_.truth, hits);
       const Judgement grid = judge_against_grid(at_.voxel_size, exact_, hits);
       row.shape = shape.confusion, row.grid = grid.confusion;
       row.t = error_statistics(shape.t_errors_voxels);
@@ -103,7 +82,7 @@ class Round {
       NormalRow row;
       row.at = at_, row.method = name;
       hit_normals(level_set_, rays_, exact_, name, normals);
-      row.degrees = error_statistics(normal_errors_degrees(shape_, rays_, exact_, normals));
+      row.degrees = error_statistics(normal_errors_degrees(sampled_.shape, rays_, exact_, normals));
       const RayCounts counts = counts_of_normal(name);
       row.samples = counts.samples, row.interpolations = counts.interpolations;
       result_.normals.push_back(row);
@@ -152,8 +131,8 @@ class Round {
         options.intersector = intersector, options.traversal = traversal;
         options.scheme = scheme, options.occluders = &occluders;
         in_batches(chords_.size(), [&](std::size_t begin, std::size_t count) {
-          std::array<bool, batch> found;
-          std::array<RayCounts, batch> counts;
+          std::array<bool, ray_batch> found;
+          std::array<RayCounts, ray_batch> counts;
           any_hits(level_set_, {&chords_[begin], count}, options, {found.data(), count},
                    {counts.data(), count});
           for (std::size_t i = 0; i < count; ++i) {
@@ -211,82 +190,46 @@ class Round {
     }
   }
 
-  const Reference& shape_;
+  const SampledShape& sampled_;
   const AnalyticSettings& settings_;
   AnalyticResult& result_;
-  Sampling at_;
-  BlockGrid grid_;
-  LevelSet level_set_;
-  SampledReference reference_;
-  Camera camera_;
-  std::vector<WorldRay> primary_, chords_, rays_;
-  std::vector<Hit> exact_;
+  const Sampling& at_;
+  const BlockGrid& grid_;
+  const LevelSet& level_set_;
+  const Camera& camera_;
+  const std::vector<WorldRay>&primary_, &chords_, &rays_;
+  const std::vector<Hit>& exact_;
 };
-
-// Adds a point to the curve of that shape, method and quantity.
-void add_point(std::vector<Convergence>& curves, const Reference& shape, const std::string& method,
-               const std::string& quantity, double voxel_size, double mean, double median) {
-  auto curve = std::find_if(curves.begin(), curves.end(), [&](const Convergence& c) {
-    return c.shape == shape.name && c.method == method && c.quantity == quantity;
-  });
-  if (curve == curves.end()) {
-    curves.emplace_back();
-    curve = curves.end() - 1;
-    curve->shape = shape.name, curve->method = method, curve->quantity = quantity;
-    curve->smooth = shape.smooth;
-  }
-  curve->voxel_sizes.push_back(voxel_size);
-  curve->means.push_back(mean);
-  curve->medians.push_back(median);
-}
 
 } // namespace
 
 AnalyticResult run_analytic_suite(const AnalyticSettings& settings,
                                   const std::function<void(double)>& progress) {
-  const std::vector<Reference> all = all_references();
-  std::vector<std::string> names;
-  for (const Reference& shape : all) names.push_back(shape.name);
-  for (const std::string& name : settings.shapes)
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      std::string known;
-      for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
-      throw Error(ErrorKind::usage, "unknown shape '" + printable(name, 80) + "'; there are " + known);
-    }
-
+  const std::vector<Reference> shapes = chosen_references(settings);
   AnalyticResult result;
-  std::vector<const Reference*> chosen;
-  for (const Reference& shape : all)
-    if (settings.shapes.empty() ||
-        std::find(settings.shapes.begin(), settings.shapes.end(), shape.name) != settings.shapes.end())
-      chosen.push_back(&shape);
-  const double rounds = static_cast<double>(chosen.size() * settings.resolutions.size());
+  ConvergenceCurves curves;
+  const double rounds = static_cast<double>(shapes.size() * settings.resolutions.size());
   double done = 0;
-  for (const Reference* shape : chosen)
+  for (const Reference& shape : shapes)
     for (const int resolution : settings.resolutions) {
       check_cancel();
-      Round(*shape, resolution, settings, result).run();
+      const std::size_t solver = result.solvers.size(), normal = result.normals.size();
+      const SampledShape sampled(shape, resolution, settings);
+      Round(sampled, settings, result).run();
+      const double h = sampled.at.voxel_size;
+      for (std::size_t i = solver; i < result.solvers.size(); ++i) {
+        const SolverRow& row = result.solvers[i];
+        curves.add(shape, row.method, "t", h, row.t.mean * h, row.t.p50 * h);
+        if (shape.is_distance)
+          curves.add(shape, row.method, "distance", h, row.distance.mean * h, row.distance.p50 * h);
+      }
+      for (std::size_t i = normal; i < result.normals.size(); ++i) {
+        const NormalRow& row = result.normals[i];
+        curves.add(shape, row.method, "normal", h, row.degrees.mean, row.degrees.p50);
+      }
       progress(++done / rounds);
     }
-
-  const auto reference = [&](const std::string& name) -> const Reference& {
-    return **std::find_if(chosen.begin(), chosen.end(), [&](const Reference* r) { return r->name == name; });
-  };
-  for (const SolverRow& row : result.solvers) {
-    const double h = row.at.voxel_size;
-    const Reference& shape = reference(row.at.shape);
-    add_point(result.convergence, shape, row.method, "t", h, row.t.mean * h, row.t.p50 * h);
-    if (shape.is_distance)
-      add_point(result.convergence, shape, row.method, "distance", h, row.distance.mean * h,
-                row.distance.p50 * h);
-  }
-  for (const NormalRow& row : result.normals)
-    add_point(result.convergence, reference(row.at.shape), row.method, "normal", row.at.voxel_size,
-              row.degrees.mean, row.degrees.p50);
-  for (Convergence& curve : result.convergence) {
-    curve.mean_slope = log_log_slope(curve.voxel_sizes, curve.means);
-    curve.median_slope = log_log_slope(curve.voxel_sizes, curve.medians);
-  }
+  result.convergence = curves.finish();
   return result;
 }
 

@@ -2,30 +2,13 @@
 // intersector, normal scheme and acceleration of the lists.
 #pragma once
 
-#include "levelray/measure/hit_judgement.hpp"
+#include "levelray/measure/sampled_shape.hpp"
 
 #include <functional>
 #include <string>
 #include <vector>
 
 namespace levelray {
-
-struct AnalyticSettings {
-  std::vector<int> resolutions{32, 64, 128, 256}; // N: voxels of 1/N
-  std::vector<std::string> shapes;                // names; empty: all
-  double half_width_voxels = 3;
-  int image_size = 96;       // image_size^2 primary rays
-  std::size_t chords = 8192; // random ones
-  std::uint64_t seed = 1;
-  int repetitions = 3; // of timings; 0: none
-};
-
-// What all rows say of themselves: a shape sampled at a resolution.
-struct Sampling {
-  std::string shape;
-  int resolution = 0;
-  double voxel_size = 0;
-};
 
 struct SolverRow {
   Sampling at;
@@ -48,14 +31,6 @@ struct AccelerationRow {
   std::string method, rays;    // "primary", "chords", "shadow"
   std::uint64_t different = 0; // answers that are not the first row's bit for bit, over all intersectors
   double steps = 0, tests = 0, ns = 0; // per ray, with the exact intersector
-};
-
-// Of errors in world units, or degrees, against the voxel size: the slopes of the logarithms' least squares.
-struct Convergence {
-  std::string shape, method, quantity; // "t", "distance" or "normal"
-  bool smooth = true;                  // the shape
-  std::vector<double> voxel_sizes, means, medians;
-  double mean_slope = 0, median_slope = 0; // NaN where errors are 0 or there is one resolution
 };
 
 struct AnalyticResult {

@@ -8,7 +8,7 @@
 namespace levelray {
 
 struct TimeSpread {
-  double median = 0, min = 0, max = 0; // nanoseconds of this thread's processor time
+  double median = 0, min = 0, max = 0; // nanoseconds of the process' processor time, all threads together
 };
 
 // Runs each once without counting, then `repetitions` times in rotated order. Stops where parallel loops
