@@ -48,8 +48,10 @@ double Exact::evaluate(const Bernstein<double>& f, double s) {
 double Exact::last_of_bracket(const Bernstein<double>& f) {
   if (!(f.start > 0)) return 0;
   const bool ends = f.end <= 0;
-  // One change of sign: one root. A minimum can only matter where the middle coefficients dip and come back.
-  if (ends && (f.sum1 > 0 || f.sum2 <= 0)) return 1;
+  // One change of sign: one root. Where f rises to an end at 0, or at what rounding makes of 0, that end is a
+  // second root to the eye of `polish`: the minimum before it has to end the bracket.
+  if (ends && f.sum2 >= 3 * f.end && (f.sum1 > 0 || f.sum2 <= 0)) return 1;
+  // A minimum can only matter where the middle coefficients dip and come back.
   if (!ends && f.sum1 > 0 && f.sum2 > 0) return -1;
   const double minimum = levelray::local_minimum(f);
   if (minimum > 0 && levelray::evaluate(f, minimum) <= 0) return minimum;

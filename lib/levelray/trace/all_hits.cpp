@@ -35,8 +35,9 @@ double bisect(const Bernstein<double>& f, double low, double high) {
 template <class Emit>
 class SignWalk {
  public:
-  SignWalk(const SurfaceBlocks& surface, const RayFrame& frame, Emit& emit)
-      : surface_(surface), frame_(frame), emit_(emit), side_(frame.from_outside ? 1 : 0), first_(side_) {}
+  SignWalk(const SurfaceBlocks& surface, const RayFrame& frame, double t_max, Emit& emit)
+      : surface_(surface), frame_(frame), emit_(emit), t_max_(t_max), side_(frame.from_outside ? 1 : 0),
+        first_(side_) {}
 
   void visit(const VisitedCell& cell) {
     cell_ = &cell;
@@ -97,7 +98,7 @@ class SignWalk {
   }
   void come_to_zero(double at) {
     at_zero_ = true;
-    zero_t_ = frame_.t(cell_->in + at * (cell_->out - cell_->in));
+    zero_t_ = std::min(frame_.t(cell_->in + at * (cell_->out - cell_->in)), t_max_);
     zero_cell_ = grid_cell(surface_, frame_, cell_->position);
   }
   void tell(PlaceKind kind, double t, const Vec3i& cell) {
@@ -109,6 +110,7 @@ class SignWalk {
   const SurfaceBlocks& surface_;
   const RayFrame& frame_;
   Emit& emit_;
+  double t_max_; // to which the frame's end may be rounded up
   const VisitedCell* cell_ = nullptr;
   int side_, first_;     // 0: not known yet
   bool at_zero_ = false; // f has come to 0, and nothing else has been seen since
@@ -136,7 +138,7 @@ EndSides for_each_place(const LevelSet& level_set, const WorldRay& ray, Emit&& e
   RayFrame frame;
   if (!enter_box(surface, transform, ray, frame)) return side_far_from_surface(level_set, ray);
   WalkCounts counts;
-  SignWalk<Emit> signs(surface, frame, emit);
+  SignWalk<Emit> signs(surface, frame, ray.t_max, emit);
   walk_cells(surface, frame, counts, [&](const VisitedCell& cell) {
     signs.visit(cell);
     return false;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace levelray {
 
@@ -19,6 +20,10 @@ RayValues::RayValues(const BlockGrid& grid, const WorldRay& ray) : grid_(&grid) 
     offset_[a][0] = std::scalbn(ray.origin[a], -voxel_exponent);
     offset_[a][1] = -std::scalbn(grid.transform.origin[a], -voxel_exponent);
     direction_[a] = std::scalbn(ray.direction[a], -direction_exponent);
+    for (const auto& [original, scaled] :
+         {std::pair{ray.origin[a], offset_[a][0]}, std::pair{grid.transform.origin[a], offset_[a][1]},
+          std::pair{ray.direction[a], direction_[a]}})
+      underflows_ |= original != 0 && std::fabs(scaled) < 0x1p-900;
   }
 }
 
@@ -26,7 +31,7 @@ Enclosure RayValues::at(double t) const {
   const double scaled_t = std::scalbn(t, t_exponent_);
   DoubleDouble weight[3][2]; // towards the lower and the upper corners, in units of a voxel's edge
   int cell[3];
-  bool tiny = false;
+  bool tiny = underflows_;
   for (int a = 0; a < 3; ++a) {
     const DoubleDouble way = two_product(scaled_t, direction_[a]);
     ExactSum<8> place;

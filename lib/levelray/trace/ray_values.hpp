@@ -32,7 +32,8 @@ class RayValues {
   const BlockGrid* grid_;
   double offset_[3][2]; // the ray's origin and minus the grid's
   double direction_[3], voxel_;
-  int t_exponent_; // t times 2^that is the factor of direction_
+  int t_exponent_;          // t times 2^that is the factor of direction_
+  bool underflows_ = false; // scaling may have lost something of coordinates below 2^-900 voxels
 };
 
 } // namespace levelray

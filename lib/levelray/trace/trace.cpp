@@ -72,6 +72,13 @@ struct PlainWalk {
   }
 };
 
+// The time of the frame's end may be rounded up beyond the interval's.
+Hit within(const WorldRay& ray, Hit hit) {
+  hit.t = std::min(hit.t, ray.t_max);
+  hit.t_outside = std::min(hit.t_outside, ray.t_max);
+  return hit;
+}
+
 RayCounts ray_counts(const WalkCounts& walked, int interpolations) {
   return {walked.steps(), walked.cells, static_cast<std::uint32_t>(interpolations), 8 * walked.cells};
 }
@@ -146,7 +153,7 @@ template <class Intersector>
 Hit trace_closest(const LevelSet& level_set, const WorldRay& ray) {
   RayFrame frame;
   return enter_box(level_set.surface(), level_set.grid().transform, ray, frame)
-             ? trace_frame<Intersector, LeapWalk>(level_set, frame)
+             ? within(ray, trace_frame<Intersector, LeapWalk>(level_set, frame))
              : Hit{};
 }
 
@@ -168,7 +175,7 @@ void closest_hits(const LevelSet& level_set, std::span<const WorldRay> rays, con
       for_each_frame<Walk>(level_set, rays, options.bounds,
                            [&](std::size_t i, const RayFrame& frame, bool entered) {
                              if (entered) {
-                               hits[i] = trace_frame<Intersector, Walk>(level_set, frame);
+                               hits[i] = within(rays[i], trace_frame<Intersector, Walk>(level_set, frame));
                                return;
                              }
                              hits[i] = Hit{};
