@@ -68,12 +68,13 @@ TEST_CASE("the oracle's long double and its exact numbers say the same, and so d
     const ReferenceTracer reference(shape.grid);
     RandomRays random(61);
     std::size_t different = 0, roots = 0, unlike_reference = 0, odd = 0;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 900; ++i) {
       WorldRay ray = random.through(active_box(shape.grid));
       if (i % 3 == 0) ray.origin = random.in_box(active_box(shape.grid));
       if (i % 4 == 0) ray.t_max = random.uniform(0, 60);
       const OracleAnswer fast = oracle.ask(ray), exact = oracle.ask(ray, true);
-      REQUIRE(exact.exactly);
+      if (!exact.exactly) continue; // the interval does not meet the grid's box
+      CHECK_FALSE(fast.exactly);    // nothing in doubt in random rays
       different += fast.first_sign != exact.first_sign || fast.last_sign != exact.last_sign ||
                    fast.roots.size() != exact.roots.size();
       for (std::size_t r = 0; r < fast.roots.size() && r < exact.roots.size(); ++r) {
