@@ -12,8 +12,12 @@ namespace {
 constexpr float smooth_ratio = 0.2f;   // of second to first differences, at most, where nothing is sharp
 constexpr float flat_ratio = 0.01f;    // of what a plane is off by to the largest second difference, at most
 constexpr int supporters = 12;         // samples that lie on a plane, at least
+constexpr int supporters_alone = 28;   // where there is no other plane
+constexpr float other_cosine = 0.9f;   // of the angle between planes, at most, that make a crease
 constexpr float reach_voxels = 0.6f;   // from the hit to its plane, at most
-constexpr float nearer_voxels = 1e-3f; // that another plane must be, to be another one
+constexpr float same_cosine = 0.9999f; // of planes that are the same, at least, if ...
+constexpr float same_voxels = 1e-2f;   // ... they are this near each other at the hit
+constexpr int most_planes = 8;         // more are no crease
 
 // The largest |first| and |second| differences in the 12 rows of four samples through the cell.
 struct RowDifferences {
@@ -37,6 +41,15 @@ struct RowDifferences {
 // f = value + gradient . (p - hit).
 struct Plane {
   float value, gradient[3];
+  float slope = 0; // |gradient|
+  int samples = 0; // that lie on it
+
+  float distance() const { return std::fabs(value) / slope; } // from the hit, voxels
+  float cosine(const Plane& other) const {
+    return (gradient[0] * other.gradient[0] + gradient[1] * other.gradient[1] +
+            gradient[2] * other.gradient[2]) /
+           (slope * other.slope);
+  }
 };
 
 // Whether the cell with lowest corner (i,j,k) is flat within `tolerance`; its plane then.
@@ -82,26 +95,38 @@ Vec3d SharpFeatures::gradient(const Neighbourhood& f, const CellPosition& at) {
   const RowDifferences differences(f);
   if (!(differences.second > smooth_ratio * differences.first)) return OffsetDifferences::gradient(f, at);
 
+  // Find the planes around.
   const float hit[3] = {static_cast<float>(at.local[0]), static_cast<float>(at.local[1]),
                         static_cast<float>(at.local[2])};
   const float tolerance = flat_ratio * differences.second;
-  Plane nearest{};
-  float distance = reach_voxels;
-  bool found = false;
-  for (int k = -1; k < 2; ++k)
-    for (int j = -1; j < 2; ++j)
-      for (int i = -1; i < 2; ++i) {
+  Plane planes[most_planes];
+  int count = 0;
+  for (int k = -1; k < 2 && count < most_planes; ++k)
+    for (int j = -1; j < 2 && count < most_planes; ++j)
+      for (int i = -1; i < 2 && count < most_planes; ++i) {
         Plane plane;
         if (!flat_cell(f, i, j, k, hit, tolerance, plane)) continue;
         const float* const g = plane.gradient;
-        const float slope = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-        // Fails for cells beyond the band, which have no slope.
-        if (!(std::fabs(plane.value) < (distance - (found ? nearer_voxels : 0)) * slope)) continue;
-        if (samples_on(plane, f, hit, tolerance) < supporters) continue;
-        nearest = plane, distance = std::fabs(plane.value) / slope, found = true;
+        plane.slope = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+        if (!(plane.slope > tolerance)) continue; // a plateau, such as beyond the band
+        const bool known = std::any_of(planes, planes + count, [&](const Plane& other) {
+          return plane.cosine(other) >= same_cosine &&
+                 std::fabs(plane.value / plane.slope - other.value / other.slope) <= same_voxels;
+        });
+        if (known) continue;
+        plane.samples = samples_on(plane, f, hit, tolerance);
+        if (plane.samples >= supporters) planes[count++] = plane;
       }
-  if (!found) return OffsetDifferences::gradient(f, at);
-  return Vec3d(nearest.gradient[0], nearest.gradient[1], nearest.gradient[2]);
+
+  // Choose the nearest, and see whether it is one side of a crease.
+  const Plane* const nearest = std::min_element(
+      planes, planes + count, [](const Plane& a, const Plane& b) { return a.distance() < b.distance(); });
+  if (count > 0 && nearest->distance() <= reach_voxels &&
+      (nearest->samples >= supporters_alone || std::any_of(planes, planes + count, [&](const Plane& other) {
+         return other.cosine(*nearest) <= other_cosine;
+       })))
+    return Vec3d(nearest->gradient[0], nearest->gradient[1], nearest->gradient[2]);
+  return OffsetDifferences::gradient(f, at);
 }
 
 } // namespace levelray

@@ -17,7 +17,11 @@
 //     side of the crease, and its gradient is that of one face. At least 12 of the 64 samples must lie on its
 //     plane within that tolerance: narrow rounds (a torus whose tube has a radius of 1.5 or 3 voxels) have
 //     hardly such cells, and none that many samples agree with.
-//  3. The hit lies on the plane that is nearest to it, which must be within 0.6 voxel: the interpolated
+//  3. A crease has two sides: there must be another such plane, turned by 26 degrees or more; or, where the
+//     other side is too far off to show, the plane must have 28 of the samples. Coarse liquids, whose curved
+//     surface is made of flat facets by redistancing, have neither, but for their rims: without this rule a
+//     fifth of their normals came out flat.
+//  4. The hit lies on the plane that is nearest to it, which must be within 0.6 voxel: the interpolated
 //     surface cuts an edge by up to half a voxel. Without any plane the answer is that of offset differences.
 //
 // All of it is independent of the field's scale, and of distances: a plane is a plane. What lies beyond the

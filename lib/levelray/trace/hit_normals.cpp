@@ -53,43 +53,54 @@ void copy_side(const LevelSet& level_set, const Vec3i& cell, const float* corner
     }
 }
 
-// Where the four samples cell-1 .. cell+2 along an axis lie: `count` of them, from neighbourhood index
-// `first`, in the record of the block `shift` blocks away, from its index `at`. A record holds indices 0
-// .. 4.
-struct Piece {
-  int first, count, shift, at;
-};
-int pieces_along(int cell_in_block, Piece (&pieces)[2]) {
-  if (cell_in_block == 0) {
-    pieces[0] = {-1, 1, -1, block_dim - 1};
-    pieces[1] = {0, 3, 0, 0};
-    return 2;
+// Where the four samples cell-1 .. cell+2 along an axis lie: the first `low` of them in the record of one
+// block, from its index `at[0]`, the others in that of the next block, from `at[1]`. A record holds indices
+// 0 .. 4 of a block. `block` is the first block's lowest cell.
+struct Split {
+  int low, at[2], block;
+
+  explicit Split(int cell) {
+    const int place = cell & (block_dim - 1);
+    low = place == 0 ? 1 : std::min(4, block_dim + 2 - place);
+    at[0] = place == 0 ? block_dim - 1 : place - 1;
+    at[1] = place == 0 ? 0 : 1;
+    block = cell - place - (place == 0 ? block_dim : 0);
   }
-  pieces[0] = {-1, std::min(4, block_dim + 2 - cell_in_block), 0, cell_in_block - 1};
-  pieces[1] = {2, 1, 1, 1};
-  return cell_in_block == block_dim - 1 ? 2 : 1;
+};
+
+// Copies 16 rows of four samples, of which the first `low` along x are in one record; what would be in a
+// record that there is not comes from the grid.
+template <int low>
+void copy_rows(const BlockGrid& grid, const Vec3i& cell, const float* const (&records)[8], const Split& x,
+               const Split& y, const Split& z, Neighbourhood& samples) {
+  for (int k = 0; k < 4; ++k) {
+    const int r = k >= z.low, row_z = (z.at[r] + k - r * z.low) * stride[2];
+    for (int j = 0; j < 4; ++j) {
+      const int q = j >= y.low, row = row_z + (y.at[q] + j - q * y.low) * stride[1];
+      const auto copy = [&](int first, int end, const float* record, int at) {
+        for (int i = first; i < end; ++i)
+          samples.at(i - 1, j - 1, k - 1) = record
+                                                ? record[row + at + i - first]
+                                                : grid.value(cell.x + i - 1, cell.y + j - 1, cell.z + k - 1);
+      };
+      copy(0, low, records[2 * q + 4 * r], x.at[0]);
+      if constexpr (low < 4) copy(low, 4, records[1 + 2 * q + 4 * r], x.at[1]);
+    }
+  }
 }
 
-// Fills in all 64 samples around a cell, from the records of up to eight blocks, or from the grid where a
-// block is no surface block.
+// Fills in all 64 samples around a cell, from the records of up to eight blocks.
 void copy_whole(const LevelSet& level_set, const Vec3i& cell, Neighbourhood& samples) {
-  Piece pieces[3][2];
-  int count[3];
-  for (int a = 0; a < 3; ++a) count[a] = pieces_along(cell[a] & (block_dim - 1), pieces[a]);
-  for (int r = 0; r < count[2]; ++r)
-    for (int q = 0; q < count[1]; ++q)
-      for (int p = 0; p < count[0]; ++p) {
-        const Piece &x = pieces[0][p], &y = pieces[1][q], &z = pieces[2][r];
-        const Vec3i block = cell + Vec3i(x.shift, y.shift, z.shift) * block_dim;
-        const float* const record = level_set.surface().find_record(block);
-        for (int k = 0; k < z.count; ++k)
-          for (int j = 0; j < y.count; ++j)
-            for (int i = 0; i < x.count; ++i)
-              samples.at(x.first + i, y.first + j, z.first + k) =
-                  record ? record[(x.at + i) * stride[0] + (y.at + j) * stride[1] + (z.at + k) * stride[2]]
-                         : level_set.grid().value(cell.x + x.first + i, cell.y + y.first + j,
-                                                  cell.z + z.first + k);
-      }
+  const Split x(cell.x), y(cell.y), z(cell.z);
+  const float* records[8] = {};
+  for (int c = 0; c < 8; ++c) {
+    const int p = c & 1, q = c >> 1 & 1, r = c >> 2;
+    if ((p && x.low == 4) || (q && y.low == 4) || (r && z.low == 4)) continue;
+    records[c] = level_set.surface().find_record(
+        {x.block + p * block_dim, y.block + q * block_dim, z.block + r * block_dim});
+  }
+  const auto copy = x.low == 4 ? copy_rows<4> : x.low == 3 ? copy_rows<3> : copy_rows<1>;
+  copy(level_set.grid(), cell, records, x, y, z, samples);
 }
 
 // Fills in the 32 samples around a cell that most normal schemes look at, from the records, which are in
