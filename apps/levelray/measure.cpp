@@ -28,6 +28,13 @@ std::vector<int> parse_counts(const std::string& option, const std::string& text
   return counts;
 }
 
+double band_voxels(const MeasureOptions& options) {
+  const Length band = parse_length("--band", options.band);
+  if (band.unit != Length::Unit::voxels || !(band.value >= 1 && band.value <= 64))
+    throw Error(ErrorKind::usage, "--band \"" + printable(options.band, 80) + "\": must be 1vx to 64vx");
+  return band.value;
+}
+
 namespace {
 
 std::vector<std::string> suite_names() {
@@ -56,12 +63,15 @@ std::string shell_text(const std::vector<std::string>& words) {
 }
 
 void measure(const MeasureOptions& options, const std::vector<std::string>& command_line) {
-  if (options.suite.empty()) throw Error(ErrorKind::usage, "measure needs --suite: " + join(suite_names()));
-  const MeasureSuite& suite = measure_suites()[find_name("--suite", options.suite, suite_names())];
+  const bool own = !options.input.path.empty();
+  if (own == !options.suite.empty())
+    throw Error(ErrorKind::usage, "measure takes a mesh or --suite: " + join(suite_names()));
+  const MeasureSuite suite = own ? MeasureSuite{"mesh", "", measure_mesh}
+                                 : measure_suites()[find_name("--suite", options.suite, suite_names())];
   std::vector<std::string> outputs;
   if (!options.common.json.empty() && options.common.json != "-")
-    check_output(options.common.json, "", {}, outputs);
-  if (!options.report.empty()) check_output(options.report, "", {".html", ".htm"}, outputs);
+    check_output(options.common.json, options.input.path, {}, outputs);
+  if (!options.report.empty()) check_output(options.report, options.input.path, {".html", ".htm"}, outputs);
 
   const ThreadLimit threads(options.common.threads);
   Progress progress(options.common.quiet);
@@ -97,27 +107,33 @@ void add_measure(CLI::App& program, Work& run, const std::vector<std::string>& c
   CLI::App& command =
       *program.add_subcommand("measure", "Measure what methods lose, how exact and how fast they are");
   command.footer(R"(Examples:
+  levelray measure statue.ply --report statue.html
   levelray measure --suite analytic --report accuracy.html
   levelray measure --suite analytic --resolution 64,128,256,512 --shapes sphere,torus --json accuracy.json
 
-Every method by every shape and resolution: rays that leak, meet phantoms or wrong surfaces, errors of hits and
+Of a mesh: how far its level sets are from it, where it is too thin for them, and what each method gives and costs.
+Of a suite: every method by every shape and resolution: rays that leak, meet phantoms or wrong surfaces, errors of hits and
 normals, how they shrink with the voxels, times and work. The report is one page that needs no network. Ends with 6
 where a promise is broken: exact hits that are wrong, accelerations that change an answer.)");
   std::string suites;
   for (const MeasureSuite& suite : measure_suites()) suites += fmt::format("{}: {}", suite.name, suite.help);
+  command.add_option("IN", options->input.path, "A mesh, instead of --suite");
   command.add_option("--suite", options->suite, "What to measure. " + suites)->type_name("NAME");
   command.add_option("--report", options->report, "Write the page to FILE.html")->type_name("FILE");
   command
-      .add_option("--resolution", options->resolutions,
-                  "Voxels along a length of 1, which shapes have about; one or more (32,64,128,256)")
+      .add_option(
+          "--resolution", options->resolutions,
+          "Voxels along the longest side of the mesh (64,128,256), or along a length of 1, which shapes have "
+          "about (32,64,128,256)")
       ->type_name("LIST");
   command.add_option("--shapes", options->shapes, "Of these shapes only")->type_name("LIST");
   command.add_option("--band", options->band, "Half-width of the band, in voxels")
       ->type_name("Nvx")
       ->capture_default_str();
   command
-      .add_option("--rays", options->rays,
-                  "Random rays per shape; about as many pass through the pixels of a square picture")
+      .add_option(
+          "--rays", options->rays,
+          "Random rays per shape; for suites as many, about, pass through the pixels of a square picture")
       ->check(CLI::Range(std::size_t{16}, std::size_t{100'000'000}))
       ->capture_default_str();
   command.add_option("--seed", options->seed, "Of the random rays")->capture_default_str();
@@ -126,6 +142,7 @@ where a promise is broken: exact hits that are wrong, accelerations that change 
                   "Repetitions of timings, of which the median counts; 0: no times")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
+  options->input.add_to(command);
   options->common.add_to(command);
   command.callback(
       [options, &run, command_line] { run = [options, command_line] { measure(*options, command_line); }; });

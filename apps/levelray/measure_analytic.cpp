@@ -18,10 +18,7 @@ AnalyticSettings analytic_settings(const MeasureOptions& options) {
   if (!options.resolutions.empty())
     settings.resolutions = parse_counts("--resolution", options.resolutions, 8, 4096);
   if (!options.shapes.empty()) settings.shapes = split_list(options.shapes);
-  const Length band = parse_length("--band", options.band);
-  if (band.unit != Length::Unit::voxels || !(band.value >= 1 && band.value <= 64))
-    throw Error(ErrorKind::usage, "--band \"" + printable(options.band, 80) + "\": must be 1vx to 64vx");
-  settings.half_width_voxels = band.value;
+  settings.half_width_voxels = band_voxels(options);
   settings.chords = options.rays;
   settings.image_size = std::max(4, static_cast<int>(std::sqrt(static_cast<double>(options.rays))));
   settings.seed = options.seed;

@@ -34,6 +34,37 @@ void LogLogPlot::add(const std::string& name, double slope, const std::vector<do
   json_["series"].push_back({{"name", name}, {"slope", finite_json(slope)}, {"points", std::move(points)}});
 }
 
+TradePlot::TradePlot(const std::string& id, const std::string& title, const std::string& x,
+                     const std::string& y) {
+  json_ = {{"id", id}, {"title", title}, {"kind", "trade"}, {"x", x}, {"y", y}, {"series", Json::array()}};
+}
+
+void TradePlot::add(const std::string& name, double x, double y, const std::string& label) {
+  Json& all = json_["series"];
+  auto series = std::find_if(all.begin(), all.end(), [&](const Json& s) { return s["name"] == name; });
+  if (series == all.end()) {
+    all.push_back({{"name", name}, {"slope", nullptr}, {"points", Json::array()}});
+    series = all.end() - 1;
+  }
+  if (x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y))
+    (*series)["points"].push_back(Json::array({x, y, label, false}));
+}
+
+Json TradePlot::json() const {
+  Json result = json_;
+  const auto beaten = [&](double x, double y) {
+    for (const Json& series : json_["series"])
+      for (const Json& point : series["points"]) {
+        const double u = point[0], v = point[1];
+        if (u <= x && v <= y && (u < x || v < y)) return true;
+      }
+    return false;
+  };
+  for (Json& series : result["series"])
+    for (Json& point : series["points"]) point[3] = !beaten(point[0], point[1]);
+  return result;
+}
+
 Json finite_json(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

@@ -44,6 +44,20 @@ class LogLogPlot {
   Json json_;
 };
 
+// Error against cost, both logarithmic, a mark for each configuration: {id, title, kind: "trade", x, y,
+// series:
+// [{name, points: [[x, y, label, in front]]}]}. A name's points make a series. What is not positive is left
+// out. In front (the Pareto front) are points that no other equals or betters in both and betters in one.
+class TradePlot {
+ public:
+  TradePlot(const std::string& id, const std::string& title, const std::string& x, const std::string& y);
+  void add(const std::string& name, double x, double y, const std::string& label);
+  Json json() const;
+
+ private:
+  Json json_;
+};
+
 // JSON has no NaN: null.
 Json finite_json(double value);
 

@@ -13,6 +13,7 @@ namespace levelray {
 // As given; what a suite does not know of, it leaves alone.
 struct MeasureOptions {
   CommonOptions common;
+  InputOptions input; // its path is empty for suites
   std::string suite, report, resolutions, shapes, band = "3vx";
   std::size_t rays = 8192;
   std::uint64_t seed = 1;
@@ -37,6 +38,11 @@ inline const std::vector<MeasureSuite>& measure_suites() {
   return suites;
 }
 
+// A mesh of the user's, options.input.
+void measure_mesh(const MeasureOptions& options, Progress& progress, Json& document);
+
+// Of --band. Throws Error(usage).
+double band_voxels(const MeasureOptions& options);
 // "32,64,128": whole numbers. Throws Error(usage), naming the option.
 std::vector<int> parse_counts(const std::string& option, const std::string& text, int least, int most);
 

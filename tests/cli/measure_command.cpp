@@ -92,7 +92,7 @@ TEST_CASE("measure says what was wrong with its options, and leaves no files the
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Catch::Contains(text));
   };
-  refused({"measure"}, "measure needs --suite: analytic");
+  refused({"measure"}, "measure takes a mesh or --suite: analytic");
   refused({"measure", "--suite", "analitic"}, "analytic");
   refused({"measure", "--suite", "analytic", "--shapes", "cube"},
           "unknown shape 'cube'; there are sphere, torus");
@@ -120,4 +120,45 @@ TEST_CASE("measure runs OpenVDB's tracer and converter beside ours") {
       CHECK(theirs == (table["id"] == "converters" ? 2 : 4)); // of two shapes one is a box
     }
   CHECK(titles == std::vector<std::string>{"tracers", "tracers-grid", "converters"});
+}
+
+TEST_CASE("measure tells of a mesh how far its level sets are from it, and what the trade is") {
+  const TemporaryFolder folder;
+  // A box of 2 x 1 x 0.1.
+  std::ofstream(folder / "plate.obj")
+      << "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 .1\nv 2 0 .1\nv 2 1 .1\nv 0 1 .1\n"
+         "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const RunResult run = run_program({"measure", folder / "plate.obj", "--resolution", "24,160", "--rays",
+                                     "1000", "--repeat", "1", "--json", "-", "--report", folder / "m.html"});
+  INFO(run.err);
+  REQUIRE(run.code == 0);
+  const Json json = Json::parse(run.out);
+  CHECK(json["mesh"]["closed"] == true);
+  // Rays from its two large faces meet the other one 0.1 away; those from its rim, 0.6 of 4.6, meet 1 or 2.
+  CHECK(json["thickness"]["p50"].get<double>() == Approx(0.1).margin(1e-9));
+  CHECK(json["thickness"]["p1"].get<double>() == Approx(0.1).margin(1e-9));
+  // Voxels of 1/12 and 1/80: 1.2 and 8 of them across.
+  CHECK(json["thickness"]["thin_share"][0].get<double>() == Approx(4 / 4.6).margin(0.02));
+  CHECK(json["thickness"]["thin_share"][1].get<double>() < 0.01);
+  CHECK_THAT(json["findings"].dump(), Catch::Contains("at 24: ") &&
+                                          Catch::Contains("thinner than 2 voxels") &&
+                                          Catch::Contains("--voxel 0.05"));
+  const Json& surface = json["sections"][1]["tables"][0];
+  REQUIRE(surface["rows"].size() == 2);
+  for (const Json& row : surface["rows"]) {
+    CHECK(row[4].get<double>() < 0.87); // interpolation moves the surface by sqrt(3)/2 voxels at the most
+    CHECK(row[10].get<int>() > 300);    // signs looked at
+    CHECK(row[11] == 0);                // and wrong
+  }
+  bool front = false;
+  for (const Json& row : json["sections"][0]["tables"][0]["rows"]) {
+    front = front || row[2] == "yes";
+    if (row[1] == "exact") CHECK(row[7] == 0);
+  }
+  CHECK(front);
+
+  const RunResult both = run_program({"measure", folder / "plate.obj", "--suite", "analytic"});
+  CHECK(both.code == 2);
+  const RunResult missing = run_program({"measure", folder / "none.obj"});
+  CHECK(missing.code == 3);
 }

@@ -7,6 +7,7 @@ Usage: measure_page.py PROGRAM [FOLDER]     with FOLDER: also puts pictures of t
 import base64
 import fcntl
 import json
+import math
 import os
 import select
 import shutil
@@ -99,7 +100,8 @@ class Browser:
             self.process.wait()
 
 
-def check(browser, page, document):
+def check(browser, page, document, word):
+    browser.events.clear()
     browser.open(page)
     requests = [e["params"]["request"]["url"] for e in browser.events if e.get("method") == "Network.requestWillBeSent"]
     others = [url for url in requests if url != "file://" + page and not url.startswith("data:")]
@@ -120,7 +122,12 @@ def check(browser, page, document):
         # A line and a mark per point, all within the picture.
         for i, series in enumerate(reversed(plot["series"])):
             shapes = browser.evaluate(f"{at}.querySelectorAll('g.series')[{i}].querySelectorAll('polyline,circle,rect,path').length")
-            assert shapes == 1 + len(series["points"]), (plot["id"], series["name"], shapes)
+            lines = 0 if plot.get("kind") == "trade" else 1
+            assert shapes == lines + len(series["points"]), (plot["id"], series["name"], shapes)
+        if plot.get("kind") == "trade":
+            front = sum(point[3] for s in plot["series"] for point in s["points"])
+            assert front > 0 and browser.evaluate(f"{at}.querySelectorAll('text.label').length") == front, plot["id"]
+            assert browser.evaluate(f"{at}.querySelector('polyline.front').points.numberOfItems") == 2 * front - 1, plot["id"]
         inside = browser.evaluate(f"""(() => {{ const f = {at}.querySelector('svg').getBoundingClientRect();
             return f.width > 100 && [...{at}.querySelectorAll('svg g.series *:not(title)')].every(e => {{
             const r = e.getBoundingClientRect();
@@ -135,15 +142,15 @@ def check(browser, page, document):
         # Sorting by the last column, both ways.
         key = len(table["columns"]) - 1
         values = [r[key] for r in table["rows"] if r[key] is not None]
-        for order in (sorted(values), sorted(values, reverse=True)):
+        for _ in range(2):
             browser.evaluate(f"{at}.querySelectorAll('th button')[{key}].click()")
             rising = browser.evaluate(f"{at}.querySelectorAll('th')[{key}].getAttribute('aria-sort')") == "ascending"
             expected = sorted(values, reverse=not rising)
             first = browser.evaluate(f"{at}.querySelector('tbody tr').children[{key}].textContent")
             assert first == browser.evaluate(f"shown({json.dumps(expected[0])}, {table['columns'][key]['digits']})")
-        browser.evaluate(f"""(() => {{ const i = {at}.querySelector('input'); i.value = 'sphere';
+        browser.evaluate(f"""(() => {{ const i = {at}.querySelector('input'); i.value = '{word}';
             i.dispatchEvent(new Event('input')); }})()""")
-        wanted = sum("sphere" in r for r in table["rows"])
+        wanted = sum(any(isinstance(v, str) and word in v for v in r) for r in table["rows"])
         assert browser.evaluate(f"{at}.querySelectorAll('tbody tr').length") == wanted, table["id"]
         browser.evaluate(f"(() => {{ const i = {at}.querySelector('input'); i.value = ''; i.dispatchEvent(new Event('input')); }})()")
     assert browser.evaluate("document.getElementById('command').textContent") == document["command"]
@@ -154,7 +161,7 @@ def check(browser, page, document):
     assert browser.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), "the page is wider than the window"
 
 
-def appearance(browser, folder):
+def appearance(browser, folder, name):
     """Light, dark and paper: text stands out from what is behind it."""
     def luminance(colour):
         part = [int(v) / 255 for v in colour[colour.index("(") + 1:-1].split(",")[:3]]
@@ -170,32 +177,53 @@ def appearance(browser, folder):
             size = browser.call("Page.getLayoutMetrics")["cssContentSize"]
             picture = browser.call("Page.captureScreenshot", captureBeyondViewport=True,
                                    clip={"x": 0, "y": 0, "width": size["width"], "height": min(size["height"], 3200), "scale": 1})
-            with open(os.path.join(folder, f"{media}_{scheme}.png"), "wb") as file:
+            with open(os.path.join(folder, f"{name}_{media}_{scheme}.png"), "wb") as file:
                 file.write(base64.b64decode(picture["data"]))
     assert backs[0] > 0.9 and backs[1] < 0.1 and backs[2] > 0.9, backs
     browser.call("Emulation.setEmulatedMedia", media="", features=[])
     paper = base64.b64decode(browser.call("Page.printToPDF", preferCSSPageSize=True)["data"])
     assert paper.startswith(b"%PDF") and len(paper) > 20000
     if folder:
-        with open(os.path.join(folder, "paper.pdf"), "wb") as file:
+        with open(os.path.join(folder, name + ".pdf"), "wb") as file:
             file.write(paper)
+
+
+def write_torus(path):
+    """A closed mesh of a torus."""
+    n, m = 48, 24
+    with open(path, "w", encoding="utf-8") as file:
+        for i in range(n):
+            for j in range(m):
+                u, v = 2 * math.pi * i / n, 2 * math.pi * j / m
+                r = 1 + 0.35 * math.cos(v)
+                file.write(f"v {r * math.cos(u):.9f} {r * math.sin(u):.9f} {0.35 * math.sin(v):.9f}\n")
+        for i in range(n):
+            for j in range(m):
+                a, b = i * m + j + 1, i * m + (j + 1) % m + 1
+                c, d = (i + 1) % n * m + j + 1, (i + 1) % n * m + (j + 1) % m + 1
+                file.write(f"f {a} {c} {d}\nf {a} {d} {b}\n")
 
 
 def main(program, pictures=None):
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        page, data = os.path.join(folder, "m.html"), os.path.join(folder, "m.json")
-        subprocess.run([program, "measure", "--suite", "analytic", "-q", "--resolution", "16,24,40", "--rays", "256",
-                        "--repeat", "1", "--report", page, "--json", data], check=True)
-        with open(data, encoding="utf-8") as file:
-            document = json.load(file)
+        write_torus(os.path.join(folder, "torus.obj"))
         browser = Browser(os.path.join(folder, "profile"))
         try:
             browser.attach()
-            check(browser, page, document)
-            appearance(browser, pictures)
+            # A word that is in some rows, and what to measure.
+            for name, word, arguments in (("suite", "sphere", ["--suite", "analytic", "--resolution", "16,24,40"]),
+                                          ("mesh", "exact", ["torus.obj", "--resolution", "16,32"])):
+                page, data = (os.path.join(folder, name + end) for end in (".html", ".json"))
+                subprocess.run([program, "measure", *arguments, "-q", "--rays", "256", "--repeat", "1", "--report", page,
+                                "--json", data], check=True, cwd=folder)
+                with open(data, encoding="utf-8") as file:
+                    document = json.load(file)
+                check(browser, page, document, word)
+                appearance(browser, pictures, name)
+                print(f"{name}: {sum(len(s['plots']) for s in document['sections'])} plots, "
+                      f"{sum(len(s['tables']) for s in document['sections'])} tables")
         finally:
             browser.close()
-    print(f"{sum(len(s['plots']) for s in document['sections'])} plots, {sum(len(s['tables']) for s in document['sections'])} tables")
 
 
 if __name__ == "__main__":
