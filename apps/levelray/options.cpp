@@ -79,6 +79,12 @@ VdbReadOptions InputOptions::vdb_options() const {
   return options;
 }
 
+CommonOptions CommonOptions::silent() {
+  CommonOptions options;
+  options.quiet = options.keep_warnings = true;
+  return options;
+}
+
 Json InputOptions::json() const {
   return {{"input", path},
           {"format", format},

@@ -22,7 +22,7 @@ struct CommonOptions {
   bool quiet = false;
   std::string json;           // a path, "-" for standard output, or empty
   bool keep_warnings = false; // no option: the caller tells the warnings of what it loads
-  static CommonOptions silent() { return {.quiet = true, .keep_warnings = true}; }
+  static CommonOptions silent();
 
   void add_to(CLI::App& command);
   // Results for people go to standard output, unless JSON does or nothing shall.
