@@ -7,8 +7,9 @@
 // wrong root. Ours differs in the cubic's basis, in looking at its Bernstein coefficients first (all
 // positive: no root), in closed comparisons, so that a touch is a hit, and in comparing with the side on
 // which the ray began: a segment that begins on the other side is hit at its start. A touch within rounding
-// (2^-44 of the largest corner) may count as either. On a monotone piece that ends in an extremum the place
-// may be off by some hundredths of the segment; no root is lost or taken for another.
+// (2^-44 of the largest corner) may count as either. No root is lost. Near an extremum
+// three steps leave the place off by 0.1 voxel for one hit in a thousand on thin shapes: always within the
+// piece of the first root, but now and then nearer to the second of two close ones.
 #pragma once
 
 #include "levelray/intersect/segment_cubic.hpp"

@@ -7,9 +7,9 @@
 // the differences along the cell's four edges in x, hence never larger than the largest of them, so that
 //   |df/ds| <= L = sum over axes of (largest edge difference along the axis) * (the segment's extent along
 //   it).
-// A bound per block (as published: one number for its 64 cells and all directions) would save finding L, at
-// 12 differences a cell, for steps that are shorter by the ratio of the bounds; it is another loop over the
-// ray, which an intersector, shown one cell's segment, does not have.
+// A bound per block (one number for its 64 cells and all directions) would save finding L, at 12 differences
+// a cell, for steps that are shorter by the ratio of the bounds, and its steps could pass from cell to cell:
+// another walk along the ray, which an intersector, shown one cell's segment, does not have.
 //
 // From the end the same bound is used backwards: no root lies in the last f(1)/L of the segment. So most
 // segments without a root are told by their two ends.

@@ -19,14 +19,14 @@
 //     hardly such cells, and none that many samples agree with.
 //  3. A crease has two sides: there must be another such plane, turned by 26 degrees or more; or, where the
 //     other side is too far off to show, the plane must have 28 of the samples. Coarse liquids, whose curved
-//     surface is made of flat facets by redistancing, have neither, but for their rims: without this rule a
-//     fifth of their normals came out flat.
+//     surface is made of flat facets by redistancing, have neither, but for their rims: without this rule it
+//     moved a fifth of their normals by more than 2 degrees, with it one in 200 at the most.
 //  4. The hit lies on the plane that is nearest to it, which must be within 0.6 voxel: the interpolated
 //     surface cuts an edge by up to half a voxel. Without any plane the answer is that of offset differences.
 //
 // All of it is independent of the field's scale, and of distances: a plane is a plane. What lies beyond the
 // band is worth +-background; cells there have no gradient and count for nothing. Not continuous, on purpose.
-// Creases between curved faces (R below some 50 voxels) are rounded as in other schemes.
+// Creases between curved faces (R below some 100 voxels) are rounded as in other schemes.
 #pragma once
 
 #include "levelray/normal/cell_position.hpp"
