@@ -219,10 +219,11 @@ Json slope_table(const AnalyticResult& result) {
        {"quantity", "error of"},
        {"method", "method"},
        {"mean", "of the mean"},
-       {"median", "of the median"}});
+       {"median", "of the median"},
+       {"finest", "two finest, mean"}});
   for (const Convergence& c : result.convergence)
     table.add({c.shape, c.smooth ? "yes" : "no", c.quantity, c.method, finite_json(c.mean_slope),
-               finite_json(c.median_slope)});
+               finite_json(c.median_slope), finite_json(c.finest_slope)});
   return table.json();
 }
 

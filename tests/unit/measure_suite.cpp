@@ -168,6 +168,7 @@ TEST_CASE("the analytic suite has a row for every method and finds what is known
                               curve.method == OffsetDifferences::name;
     if (!second_order) continue;
     ++slopes;
+    CHECK(curve.finest_slope == Approx(std::log2(curve.means[1] / curve.means[2])));
     // 2 in the limit. With some hundred hits the grazing ones, whose error is that of a square root, move the
     // mean; the median has none of them.
     CHECK((curve.median_slope > 1.9 && curve.median_slope < 2.2));

@@ -5,6 +5,7 @@
 #include "levelray/measure/ray_sets.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace levelray {
 
@@ -56,6 +57,14 @@ std::vector<Convergence> ConvergenceCurves::finish() {
   for (Convergence& curve : curves_) {
     curve.mean_slope = log_log_slope(curve.voxel_sizes, curve.means);
     curve.median_slope = log_log_slope(curve.voxel_sizes, curve.medians);
+    std::vector<std::pair<double, double>> finest; // by size
+    for (std::size_t i = 0; i < curve.means.size(); ++i)
+      finest.emplace_back(curve.voxel_sizes[i], curve.means[i]);
+    std::sort(finest.begin(), finest.end());
+    finest.resize(std::min<std::size_t>(finest.size(), 2));
+    std::vector<double> sizes, means;
+    for (const auto& [size, mean] : finest) sizes.push_back(size), means.push_back(mean);
+    curve.finest_slope = log_log_slope(sizes, means);
   }
   return std::move(curves_);
 }

@@ -67,6 +67,8 @@ struct Convergence {
   bool smooth = true;                  // the shape
   std::vector<double> voxel_sizes, means, medians;
   double mean_slope = 0, median_slope = 0; // NaN where errors are 0 or there is one resolution
+  double finest_slope =
+      0; // of the means of the two smallest voxels alone, where thin parts are best resolved
 };
 
 // Curves, found by shape, method and quantity.
