@@ -143,7 +143,7 @@ def check(browser, page, document, word):
         key = len(table["columns"]) - 1
         values = [r[key] for r in table["rows"] if r[key] is not None]
         for _ in range(2):
-            browser.evaluate(f"{at}.querySelectorAll('th button')[{key}].click()")
+            browser.evaluate(f"{at}.querySelectorAll('th [role=button]')[{key}].click()")
             rising = browser.evaluate(f"{at}.querySelectorAll('th')[{key}].getAttribute('aria-sort')") == "ascending"
             expected = sorted(values, reverse=not rising)
             first = browser.evaluate(f"{at}.querySelector('tbody tr').children[{key}].textContent")
