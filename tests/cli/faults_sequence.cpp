@@ -66,12 +66,15 @@ TEST_CASE(
   write_text(folder / "box.obj", box_obj(3, 2, 1));
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const TemporaryFolder out;
-    RunOptions options;
-    options.signals = {{1.5, signal}};
-    const RunResult result =
-        run_program({"render", folder / "box.obj", "--turntable", "100000", "-o", out / "x.######.exr",
-                     "--resolution", "30", "--size", "100x80", "--json", "-"},
-                    options);
+    RunResult result;
+    // The signal shall come between frames: later where the program is slow.
+    for (double delay = 1.5; count(statuses(result.out), "rendered") == 0 && delay < 30; delay *= 2) {
+      RunOptions options;
+      options.signals = {{delay, signal}};
+      result = run_program({"render", folder / "box.obj", "--turntable", "100000", "-o", out / "x.######.exr",
+                            "--resolution", "30", "--size", "100x80", "--json", "-"},
+                           options);
+    }
     INFO("signal " << signal << ": " << result.err);
     CHECK(result.code == 128 + signal);
     CHECK_FALSE(result.signalled);
