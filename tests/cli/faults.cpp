@@ -18,14 +18,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-// Half a second is the promise. The thread sanitizer hands a signal on only when the program calls into it,
-// which a loop of arithmetic does not: with it the tests ask for an end, not for its time.
-#ifdef __SANITIZE_THREAD__
-constexpr double promised_seconds = 30;
-#else
-constexpr double promised_seconds = 0.5;
-#endif
-
 } // namespace
 
 TEST_CASE("fault 3: SIGINT and SIGTERM end long work within half a second and leave no file") {
