@@ -17,32 +17,23 @@ struct Cubic {
   double slope(double s) const { return (3 * c3 * s + 2 * c2) * s + c1; }
 };
 
+} // namespace
+
 // In the Bernstein basis, whose terms do not cancel beyond the hull of the coefficients.
-double evaluate(const Bernstein<double>& f, double s) {
+double Exact::evaluate(const Bernstein<double>& f, double s) {
   const double r = 1 - s;
   return (f.start * r + f.sum1 * s) * (r * r) + (f.sum2 * r + f.end * s) * (s * s);
 }
 
-// Where the cubic has its local minimum, if that is in (0,1); else -1. With the derivative's Bernstein
-// coefficients d0, d1, d2 it is A s^2 + 2 B s + C, A = d0 - 2 d1 + d2, B = d1 - d0, C = d0,
-// and grows at (-B + sqrt(B^2 - A C)) / A.
-double local_minimum(const Bernstein<double>& f) {
+// With the derivative's Bernstein coefficients d0, d1, d2 it is A s^2 + 2 B s + C, A = d0 - 2 d1 + d2,
+// B = d1 - d0, C = d0, and grows at (-B + sqrt(B^2 - A C)) / A.
+double Exact::local_minimum(const Bernstein<double>& f) {
   const double d0 = f.sum1 - 3 * f.start, d1 = f.sum2 - f.sum1, d2 = 3 * f.end - f.sum2;
   const double discriminant = d1 * d1 - d0 * d2; // B^2 - A C, where most terms cancel exactly
   if (!(discriminant >= 0)) return -1;
   const double root = std::sqrt(discriminant), half = d1 - d0;
   const double s = half <= 0 ? (root - half) / (d0 - d1 + (d2 - d1)) : -d0 / (half + root);
   return s > 0 && s < 1 ? s : -1;
-}
-
-} // namespace
-
-double Exact::local_minimum(const Bernstein<double>& f) {
-  return levelray::local_minimum(f);
-}
-
-double Exact::evaluate(const Bernstein<double>& f, double s) {
-  return levelray::evaluate(f, s);
 }
 
 double Exact::last_of_bracket(const Bernstein<double>& f) {
@@ -53,8 +44,8 @@ double Exact::last_of_bracket(const Bernstein<double>& f) {
   if (ends && f.sum2 >= 3 * f.end && (f.sum1 > 0 || f.sum2 <= 0)) return 1;
   // A minimum can only matter where the middle coefficients dip and come back.
   if (!ends && f.sum1 > 0 && f.sum2 > 0) return -1;
-  const double minimum = levelray::local_minimum(f);
-  if (minimum > 0 && levelray::evaluate(f, minimum) <= 0) return minimum;
+  const double minimum = local_minimum(f);
+  if (minimum > 0 && evaluate(f, minimum) <= 0) return minimum;
   return ends ? 1 : -1;
 }
 
