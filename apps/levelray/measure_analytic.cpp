@@ -47,6 +47,28 @@ std::string faults_text(const Confusion& c) {
   return text;
 }
 
+std::vector<Column> hit_columns(const std::string& title, bool unresolved, const std::vector<Column>& more) {
+  std::vector<Column> columns{{"shape", "shape"},
+                              {"resolution", "resolution"},
+                              {"method", title},
+                              {"hits", "hits"},
+                              {"misses", "misses"},
+                              {"leaks", "leaks", 3, true},
+                              {"phantoms", "phantoms", 3, true},
+                              {"wrong", "wrong", 3, true}};
+  if (unresolved) columns.push_back({"unresolved", "unresolved"});
+  columns.insert(columns.end(), more.begin(), more.end());
+  return columns;
+}
+
+Json::array_t hit_row(const Sampling& at, const std::string& method, const Confusion& c, bool unresolved,
+                      const Json::array_t& more) {
+  Json::array_t row{at.shape, at.resolution, method, c.hits, c.misses, c.leaks, c.phantoms, c.wrong};
+  if (unresolved) row.push_back(c.unresolved);
+  row.insert(row.end(), more.begin(), more.end());
+  return row;
+}
+
 Json convergence_plots(const std::vector<Convergence>& curves, const std::string& quantity,
                        const std::string& what) {
   std::vector<std::string> shapes;
@@ -121,57 +143,40 @@ Json findings_of(const AnalyticResult& result) {
 
 Json solver_table(const AnalyticResult& result) {
   Table table("solvers", "Hits of intersectors; errors in voxels",
-              {{"shape", "shape"},
-               {"resolution", "resolution"},
-               {"method", "intersector"},
-               {"hits", "hits"},
-               {"misses", "misses"},
-               {"leaks", "leaks", 3, true},
-               {"phantoms", "phantoms", 3, true},
-               {"wrong", "wrong", 3, true},
-               {"unresolved", "unresolved"},
-               {"t_mean", "t mean"},
-               {"t_p50", "t p50"},
-               {"t_p99", "t p99"},
-               {"t_p999", "t p99.9"},
-               {"t_max", "t max"},
-               {"primary_ns", "ns/primary"},
-               {"chord_ns", "ns/random"},
-               {"steps", "steps/hit"},
-               {"samples", "samples/hit"},
-               {"interpolations", "interp./hit"}});
-  for (const SolverRow& r : result.solvers) {
-    const Confusion& c = r.shape;
-    table.add({r.at.shape, r.at.resolution, r.method, c.hits, c.misses, c.leaks, c.phantoms, c.wrong,
-               c.unresolved, r.t.mean, r.t.p50, r.t.p99, r.t.p999, r.t.max, r.primary_ns, r.chord_ns, r.steps,
-               r.samples, r.interpolations});
-  }
+              hit_columns("intersector", true,
+                          {{"t_mean", "t mean"},
+                           {"t_p50", "t p50"},
+                           {"t_p99", "t p99"},
+                           {"t_p999", "t p99.9"},
+                           {"t_max", "t max"},
+                           {"primary_ns", "ns/primary"},
+                           {"chord_ns", "ns/random"},
+                           {"steps", "steps/hit"},
+                           {"samples", "samples/hit"},
+                           {"interpolations", "interp./hit"}}));
+  for (const SolverRow& r : result.solvers)
+    table.add(hit_row(r.at, r.method, r.shape, true,
+                      {r.t.mean, r.t.p50, r.t.p99, r.t.p999, r.t.max, r.primary_ns, r.chord_ns, r.steps,
+                       r.samples, r.interpolations}));
+
   return table.json();
 }
 
 Json grid_table(const AnalyticResult& result) {
   Table table("grid", "The same hits against the grid's own surface, as the exact intersector finds it",
-              {{"shape", "shape"},
-               {"resolution", "resolution"},
-               {"method", "intersector"},
-               {"hits", "hits"},
-               {"misses", "misses"},
-               {"leaks", "leaks", 3, true},
-               {"phantoms", "phantoms", 3, true},
-               {"wrong", "wrong", 3, true},
-               {"t_mean", "t mean"},
-               {"t_p50", "t p50"},
-               {"t_p99", "t p99"},
-               {"t_p999", "t p99.9"},
-               {"t_max", "t max"},
-               {"distance_mean", "distance mean"},
-               {"distance_max", "distance max"}});
-  for (const SolverRow& r : result.solvers) {
-    const Confusion& c = r.grid;
-    table.add({r.at.shape, r.at.resolution, r.method, c.hits, c.misses, c.leaks, c.phantoms, c.wrong,
-               r.grid_t.mean, r.grid_t.p50, r.grid_t.p99, r.grid_t.p999, r.grid_t.max, r.distance.mean,
-               r.distance.max});
-  }
+              hit_columns("intersector", false,
+                          {{"t_mean", "t mean"},
+                           {"t_p50", "t p50"},
+                           {"t_p99", "t p99"},
+                           {"t_p999", "t p99.9"},
+                           {"t_max", "t max"},
+                           {"distance_mean", "distance mean"},
+                           {"distance_max", "distance max"}}));
+  for (const SolverRow& r : result.solvers)
+    table.add(hit_row(r.at, r.method, r.grid, false,
+                      {r.grid_t.mean, r.grid_t.p50, r.grid_t.p99, r.grid_t.p999, r.grid_t.max,
+                       r.distance.mean, r.distance.max}));
+
   return table.json();
 }
 

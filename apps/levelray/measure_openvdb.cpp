@@ -158,50 +158,32 @@ std::vector<ConverterRow> convert(const std::string& name, const OrientedBox& bo
 
 Json tracer_table(const std::vector<TracerRow>& rows) {
   Table table("tracers", "Hits; errors in voxels and degrees, against the shape",
-              {{"shape", "shape"},
-               {"resolution", "resolution"},
-               {"method", "tracer"},
-               {"hits", "hits"},
-               {"misses", "misses"},
-               {"leaks", "leaks", 3, true},
-               {"phantoms", "phantoms", 3, true},
-               {"wrong", "wrong", 3, true},
-               {"unresolved", "unresolved"},
-               {"t_mean", "t mean"},
-               {"t_p99", "t p99"},
-               {"t_p999", "t p99.9"},
-               {"t_max", "t max"},
-               {"angle_mean", "angle mean"},
-               {"angle_p99", "angle p99"},
-               {"angle_max", "angle max"},
-               {"primary_ns", "ns/primary"},
-               {"chord_ns", "ns/random"},
-               {"megabytes", "MB"}});
+              hit_columns("tracer", true,
+                          {{"t_mean", "t mean"},
+                           {"t_p99", "t p99"},
+                           {"t_p999", "t p99.9"},
+                           {"t_max", "t max"},
+                           {"angle_mean", "angle mean"},
+                           {"angle_p99", "angle p99"},
+                           {"angle_max", "angle max"},
+                           {"primary_ns", "ns/primary"},
+                           {"chord_ns", "ns/random"},
+                           {"megabytes", "MB"}}));
   for (const TracerRow& r : rows)
-    table.add({r.at.shape, r.at.resolution, r.method, r.shape.hits, r.shape.misses, r.shape.leaks,
-               r.shape.phantoms, r.shape.wrong, r.shape.unresolved, r.t.mean, r.t.p99, r.t.p999, r.t.max,
-               r.degrees.mean, r.degrees.p99, r.degrees.max, r.primary_ns, r.chord_ns, r.megabytes});
+    table.add(hit_row(r.at, r.method, r.shape, true,
+                      {r.t.mean, r.t.p99, r.t.p999, r.t.max, r.degrees.mean, r.degrees.p99, r.degrees.max,
+                       r.primary_ns, r.chord_ns, r.megabytes}));
   return table.json();
 }
 
 Json grid_table(const std::vector<TracerRow>& rows) {
-  Table table("tracers-grid",
-              "The same hits against the grid's own surface, as the exact intersector finds it",
-              {{"shape", "shape"},
-               {"resolution", "resolution"},
-               {"method", "tracer"},
-               {"hits", "hits"},
-               {"misses", "misses"},
-               {"leaks", "leaks", 3, true},
-               {"phantoms", "phantoms", 3, true},
-               {"wrong", "wrong", 3, true},
-               {"t_mean", "t mean"},
-               {"t_p99", "t p99"},
-               {"t_p999", "t p99.9"},
-               {"t_max", "t max"}});
+  Table table(
+      "tracers-grid", "The same hits against the grid's own surface, as the exact intersector finds it",
+      hit_columns("tracer", false,
+                  {{"t_mean", "t mean"}, {"t_p99", "t p99"}, {"t_p999", "t p99.9"}, {"t_max", "t max"}}));
   for (const TracerRow& r : rows)
-    table.add({r.at.shape, r.at.resolution, r.method, r.grid.hits, r.grid.misses, r.grid.leaks,
-               r.grid.phantoms, r.grid.wrong, r.grid_t.mean, r.grid_t.p99, r.grid_t.p999, r.grid_t.max});
+    table.add(
+        hit_row(r.at, r.method, r.grid, false, {r.grid_t.mean, r.grid_t.p99, r.grid_t.p999, r.grid_t.max}));
   return table.json();
 }
 
