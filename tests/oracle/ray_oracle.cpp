@@ -91,10 +91,12 @@ void RayOracle::corners(const int (&cell)[3], float (&f)[8]) const {
         *corner(cell[0] - low_[0] + (c & 1), cell[1] - low_[1] + (c >> 1 & 1), cell[2] - low_[2] + (c >> 2));
 }
 
-// All crossed cells within the line's margin in [from, to], with the piece of the line in each, in order of
-// their middles; `in` may be a little above `out` for those that are barely touched or missed. Which cells,
-// is found out in double with a margin to spare: 2^-20 voxel, and 2^-46 of the distances for its rounding.
-void RayOracle::cells_near(const Line& line, std::vector<Cell>& cells, Real from, Real to) const {
+// All cells, or all crossed ones, within the line's margin in [from, to], with the piece of the line in each,
+// in order of their middles; `in` may be a little above `out` for those that are barely touched or missed.
+// Which cells, is found out in double with a margin to spare: 2^-20 voxel, and 2^-46 of the distances for its
+// rounding.
+void RayOracle::cells_near(const Line& line, std::vector<Cell>& cells, Real from, Real to,
+                           Which which) const {
   cells.clear();
   const int m = line.main, u = (m + 1) % 3, v = (m + 2) % 3;
   const int step = line.d[m] > 0 ? 1 : -1, count = size_[m] - 1;
@@ -129,7 +131,9 @@ void RayOracle::cells_near(const Line& line, std::vector<Cell>& cells, Real from
     at[m] = slab;
     for (at[v] = begin[v]; at[v] <= end[v]; ++at[v])
       for (at[u] = begin[u]; at[u] <= end[u]; ++at[u]) {
-        if (!crossed_[static_cast<std::size_t>(corner(at[0], at[1], at[2]) - samples_.data())]) continue;
+        if (which == Which::crossed &&
+            !crossed_[static_cast<std::size_t>(corner(at[0], at[1], at[2]) - samples_.data())])
+          continue;
         Cell cell{{at[0] + low_[0], at[1] + low_[1], at[2] + low_[2]}, from, to};
         for (int a = 0; a < 3; ++a) {
           if (line.d[a] == 0) continue; // who needs to know looks again
@@ -152,7 +156,7 @@ bool RayOracle::roots_by_long_double(const WorldRay& ray, const Line& line, Orac
   answer.first_sign = start_sign(ray);
   if (answer.first_sign == 0) return false;
   int sign = answer.first_sign;
-  cells_near(line, cells, line.t_min, line.t_max);
+  cells_near(line, cells, line.t_min, line.t_max, Which::crossed);
   Real covered = line.t_min - 1;
   for (const Cell& cell : cells) {
     float f[8];
@@ -244,7 +248,7 @@ Real RayOracle::least(const WorldRay& ray, int side, Real from, Real to) const {
   const Line line = line_of(ray, from, to);
   if (line.empty) return result;
   std::vector<Cell> cells;
-  cells_near(line, cells, line.t_min, line.t_max);
+  cells_near(line, cells, line.t_min, line.t_max, Which::all);
   for (const Cell& cell : cells) {
     if (cell.in > cell.out) continue;
     float f[8];

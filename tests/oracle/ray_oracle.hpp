@@ -37,8 +37,8 @@ class RayOracle {
   OracleAnswer ask(const WorldRay& ray, bool exactly = false) const;
   // The sign of f at o + t d, for finite t.
   int sign_at(const WorldRay& ray, double t) const;
-  // The least of side * f on the ray in [from, to], in the cells that the surface may cross; in long double,
-  // within 2^-50 of the largest sample. Large where there is no such cell.
+  // The least of side * f on the ray in [from, to], whether the surface crosses the cells there or not; in
+  // long double, within 2^-50 of the largest sample. Large for a ray that stays beyond the samples.
   Real least(const WorldRay& ray, int side, Real from, Real to) const;
 
  private:
@@ -56,7 +56,8 @@ class RayOracle {
     Real in, out;
   };
   Line line_of(const WorldRay& ray, Real from, Real to) const;
-  void cells_near(const Line& line, std::vector<Cell>& cells, Real from, Real to) const;
+  enum class Which { crossed, all };
+  void cells_near(const Line& line, std::vector<Cell>& cells, Real from, Real to, Which which) const;
   bool roots_by_long_double(const WorldRay& ray, const Line& line, OracleAnswer& answer) const;
   void roots_exactly(const WorldRay& ray, const Line& line, OracleAnswer& answer) const;
   int start_sign(const WorldRay& ray) const;

@@ -23,7 +23,7 @@ void RayOracle::roots_exactly(const WorldRay& ray, const Line& line, OracleAnswe
   answer.exactly = true;
   answer.first_sign = start_sign(ray);
   std::vector<Cell> cells;
-  cells_near(line, cells, line.t_min, line.t_max);
+  cells_near(line, cells, line.t_min, line.t_max, Which::crossed);
   const Dyadic h(transform_.voxel_size), one(1);
   Dyadic offset[3], d[3];
   for (int a = 0; a < 3; ++a) {

@@ -32,8 +32,10 @@ SurfaceBlocks::SurfaceBlocks(const BlockGrid& grid) {
     for (std::size_t n = begin; n < end; ++n) copy_samples(grid, n, grid.nodes[sources_[n]]);
   });
   float largest_error = 0;
-  for (std::size_t b = 0; b < cells_.size(); ++b)
+  for (std::size_t b = 0; b < cells_.size(); ++b) {
     largest_error = std::max(largest_error, record(b)[record_error]);
+    least_sample_ = std::min(least_sample_, record(b)[record_least]);
+  }
   largest_sample_ = largest_error * 0x1p20f * (1 + 0x1p-22f); // the sum in copy_samples may be rounded down
   parallel_for(8, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t octant = begin; octant < end; ++octant) compute_leaps(static_cast<int>(octant));
@@ -108,10 +110,15 @@ void SurfaceBlocks::copy_samples(const BlockGrid& grid, std::size_t n, const Blo
     }
 
     // See intersect/bernstein.hpp: 2^-20 of the largest sample, and what underflow may cost.
-    float largest = 0;
-    for (int s = 0; s < record_error; ++s) largest = std::max(largest, std::fabs(record[s]));
+    float largest = 0, least = std::numeric_limits<float>::infinity();
+    for (int s = 0; s < record_error; ++s) {
+      const float size = std::fabs(record[s]);
+      largest = std::max(largest, size);
+      least = size > 0 ? std::min(least, size) : least;
+    }
     record[record_error] = largest * 0x1p-20f + 0x1p-120f;
-    std::fill(record + record_error + 1, record + record_floats, 0.f);
+    record[record_least] = least;
+    std::fill(record + record_least + 1, record + record_floats, 0.f);
   }
 }
 

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace levelray {
@@ -24,10 +25,10 @@ class SurfaceBlocks {
     std::uint64_t blocks = 0; // mask of surface blocks
     std::uint64_t first = 0;  // index of the lowest of them
   };
-  // 125 samples, x fastest; then the bound CellSegment::error for the block's cells; two floats of padding:
-  // 512 bytes that begin at a cache line.
+  // 125 samples, x fastest; then the bound CellSegment::error for the block's cells, its least sample, and a
+  // float of padding: 512 bytes that begin at a cache line.
   static constexpr int record_floats = 128;
-  static constexpr int record_error = 125;
+  static constexpr int record_error = 125, record_least = 126;
   static constexpr int record_stride_y = 5, record_stride_z = 25;
 
   SurfaceBlocks() = default;
@@ -51,6 +52,8 @@ class SurfaceBlocks {
   std::size_t block_count() const { return cells_.size(); }
   // At least all samples' absolute values.
   float largest_sample() const { return largest_sample_; }
+  // The least absolute value of a surface block's samples that are not 0; infinite where all are.
+  float least_sample() const { return least_sample_; }
   std::uint64_t cells(std::size_t block) const { return cells_[block]; }
   const float* record(std::size_t block) const { return &records_[block * record_floats]; }
   // The record of the block that holds a cell, or null where the surface crosses no cell of that block.
@@ -75,7 +78,7 @@ class SurfaceBlocks {
   void copy_samples(const BlockGrid& grid, std::size_t node, const BlockGrid::Node& source);
   void compute_leaps(int octant);
 
-  float largest_sample_ = 0;
+  float largest_sample_ = 0, least_sample_ = std::numeric_limits<float>::infinity();
   Vec3i node_min_{0, 0, 0}, node_dims_{0, 0, 0}, block_min_{0, 0, 0}, block_end_{0, 0, 0};
   std::vector<std::uint32_t> table_; // node index; meaningless where leap > 0
   std::vector<Node> nodes_;

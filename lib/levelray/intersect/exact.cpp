@@ -39,9 +39,12 @@ double Exact::local_minimum(const Bernstein<double>& f) {
 double Exact::last_of_bracket(const Bernstein<double>& f) {
   if (!(f.start > 0)) return 0;
   const bool ends = f.end <= 0;
-  // One change of sign: one root. Where f rises to an end at 0, or at what rounding makes of 0, that end is a
-  // second root to the eye of `polish`: the minimum before it has to end the bracket.
-  if (ends && f.sum2 >= 3 * f.end && (f.sum1 > 0 || f.sum2 <= 0)) return 1;
+  // One change of sign: one root. Where f does not clearly fall to its end, that may be 0, or what rounding
+  // makes of 0, and so a second root to the eye of `polish`: a minimum before it has to end the bracket.
+  // 2^-40 is far above the rounding of the coefficients, 2^-47, and small enough to be rare.
+  if (ends && (f.sum1 > 0 || f.sum2 <= 0) &&
+      f.sum2 - 3 * f.end > 0x1p-40 * (f.start - f.end + std::fabs(f.sum1)))
+    return 1;
   // A minimum can only matter where the middle coefficients dip and come back.
   if (!ends && f.sum1 > 0 && f.sum2 > 0) return -1;
   const double minimum = local_minimum(f);

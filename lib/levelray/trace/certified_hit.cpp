@@ -7,8 +7,10 @@
 #include "levelray/trace/starting_side.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace levelray {
 
@@ -16,25 +18,98 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+using Coefficients = std::array<double, 4>;
+
+// f times the side, less the margin.
+Coefficients oriented(const CellSegment& segment, double side, double margin) {
+  const Bernstein<double> f = bernstein_along<double>(segment);
+  return {side * f.start - margin, side * f.sum1 / 3 - margin, side * f.sum2 / 3 - margin,
+          side * f.end - margin};
+}
+
 // The end of the longest [0, u] found on which the cubic with these coefficients is above 0: that of all
 // halves, quarters, ... with positive coefficients, down to 2^-50.
-double positive_until(const double (&b)[4], double from, double to, int depth) {
+double positive_until(const Coefficients& b, double from, double to, int depth) {
   if (b[0] > 0 && b[1] > 0 && b[2] > 0 && b[3] > 0) return to;
   if (!(b[0] > 0) || depth == 50) return from;
   const double m01 = 0.5 * (b[0] + b[1]), m12 = 0.5 * (b[1] + b[2]), m23 = 0.5 * (b[2] + b[3]);
   const double low = 0.5 * (m01 + m12), high = 0.5 * (m12 + m23), middle = 0.5 * (low + high);
   const double half = 0.5 * (from + to);
-  const double left[4] = {b[0], m01, low, middle};
-  const double reached = positive_until(left, from, half, depth + 1);
+  const double reached = positive_until({b[0], m01, low, middle}, from, half, depth + 1);
   if (reached < half) return reached;
-  const double right[4] = {middle, high, m23, b[3]};
-  return positive_until(right, half, to, depth + 1);
+  return positive_until({middle, high, m23, b[3]}, half, to, depth + 1);
+}
+
+// Lowers `clear_to`, a t of the ray, to where f is not above the margin in a cell within `place_error` voxels
+// of the ray, whether the surface crosses that cell or not, in a plain loop over slabs of the main axis.
+void look_at_all_cells(const LevelSet& level_set, const WorldRay& ray, double side, double place_error,
+                       double margin, double& clear_to) {
+  const BlockGrid& grid = level_set.grid();
+  const GridTransform& transform = grid.transform;
+  double origin[3], direction[3];
+  int main = 0;
+  for (int a = 0; a < 3; ++a) {
+    origin[a] = (ray.origin[a] - transform.origin[a]) / transform.voxel_size;
+    direction[a] = ray.direction[a] / transform.voxel_size;
+    if (std::fabs(direction[a]) > std::fabs(direction[main])) main = a;
+  }
+  if (!(std::fabs(direction[main]) > 0)) return;
+  // All by the coordinate along the main axis, x. Slopes are 1 at the most.
+  const int way = direction[main] > 0 ? 1 : -1;
+  double slope[3];
+  for (int a = 0; a < 3; ++a) slope[a] = direction[a] / direction[main];
+  const auto t_of = [&](double x) { return (x - origin[main]) / direction[main]; };
+  const int low = grid.node_min[main] * node_dim - 1, size = grid.node_dims[main] * node_dim + 1;
+  const double first = origin[main] + ray.t_min * direction[main] - way * place_error,
+               last = origin[main] + clear_to * direction[main] + way * place_error;
+
+  for (int n = 0; n < size; ++n) {
+    const int slab = way > 0 ? low + n : low + size - 1 - n;
+    const double low_x = std::max(slab - place_error, std::min(first, last)),
+                 high_x = std::min(slab + 1 + place_error, std::max(first, last));
+    if (!(low_x <= high_x)) continue;
+    if (t_of(way > 0 ? low_x : high_x) >= clear_to) continue;
+    Box3i cells;
+    for (int a = 0; a < 3; ++a) {
+      const double y0 = origin[a] + (low_x - origin[main]) * slope[a],
+                   y1 = origin[a] + (high_x - origin[main]) * slope[a];
+      const auto index = [](double y) { return static_cast<int>(std::floor(std::clamp(y, -1e9, 1e9))); };
+      cells.min[a] = a == main ? slab : index(std::min(y0, y1) - place_error);
+      cells.max[a] = a == main ? slab : index(std::max(y0, y1) + place_error);
+    }
+    Vec3i cell;
+    for (cell.z = cells.min.z; cell.z <= cells.max.z; ++cell.z)
+      for (cell.y = cells.min.y; cell.y <= cells.max.y; ++cell.y)
+        for (cell.x = cells.min.x; cell.x <= cells.max.x; ++cell.x) {
+          // The ray's piece in the cell grown by place_error; its ends, up to twice that off, moved into it.
+          double in_x = low_x, out_x = high_x;
+          for (int a = 0; a < 3; ++a) {
+            if (a == main || slope[a] == 0) continue;
+            const double x0 = origin[main] + (cell[a] - place_error - origin[a]) / slope[a],
+                         x1 = origin[main] + (cell[a] + 1 + place_error - origin[a]) / slope[a];
+            in_x = std::max(in_x, std::min(x0, x1));
+            out_x = std::min(out_x, std::max(x0, x1));
+          }
+          if (!(in_x <= out_x)) continue;
+          if (way < 0) std::swap(in_x, out_x);
+          CellSegment segment;
+          for (int a = 0; a < 3; ++a)
+            for (const auto& [point, x] : {std::pair{&segment.in, in_x}, std::pair{&segment.out, out_x}}) {
+              const double y = a == main ? x : origin[a] + (x - origin[main]) * slope[a];
+              point->x[a] = std::clamp(y - cell[a], 0.0, 1.0);
+              point->rest[a] = 1 - point->x[a];
+            }
+          for (int c = 0; c < 8; ++c)
+            segment.corner[c] = grid.value(cell.x + (c & 1), cell.y + (c >> 1 & 1), cell.z + (c >> 2));
+          const double until = positive_until(oriented(segment, side, margin), 0, 1, 0);
+          if (until < 1)
+            clear_to = std::min(clear_to, t_of(in_x + until * (out_x - in_x) - way * 2 * place_error));
+        }
+  }
 }
 
 // What the second walk says.
 struct Clearance {
-  bool met_box = false;
-  double side = 1;
   double t = 0; // f * side > the margin and `extra` up to here
   double margin = 0;
 };
@@ -42,14 +117,15 @@ struct Clearance {
 Clearance clearance(const LevelSet& level_set, const WorldRay& ray, double extra) {
   Clearance result;
   result.t = ray.t_max;
-  RayFrame frame;
+  RayFrame frame{};
   const GridTransform& transform = level_set.grid().transform;
   const SurfaceBlocks& surface = level_set.surface();
-  if (!enter_box(surface, transform, ray, frame)) return result;
-  result.met_box = true;
+  if (surface.empty()) return result;
+  const bool meets_box = enter_box(surface, transform, ray, frame);
 
   // Distances that were rounded on the way into the frame, in voxels.
-  const double start = std::fabs(frame.t_at_start) / frame.t_per_s; // its unit is at most 2 voxels long
+  const double start =
+      meets_box ? std::fabs(frame.t_at_start) / frame.t_per_s : 0; // its unit is at most 2 voxels long
   double distances = 2 * start;
   for (int a = 0; a < 3; ++a)
     distances = std::max(distances,
@@ -57,22 +133,28 @@ Clearance clearance(const LevelSet& level_set, const WorldRay& ray, double extra
                              std::fabs(transform.origin[a]) / transform.voxel_size +
                              node_dim * (std::fabs(double(surface.node_min()[a])) + surface.node_dims()[a]));
   const double largest = static_cast<double>(surface.largest_sample());
-  const double margin = largest * (0x1p-44 + 6 * 0x1p-48 * distances) + extra;
+  const double place_error = 0x1p-48 * distances;
+  const double margin = largest * (0x1p-44 + 6 * place_error) + extra;
   result.margin = margin;
 
+  frame.from_outside |= !meets_box;
   StartingSide side(frame);
   WalkCounts counts;
-  walk_cells(surface, frame, counts, [&](const VisitedCell& cell) {
+  const auto visit = [&](const VisitedCell& cell) {
     const double sign = side.at_first(cell.segment);
-    const Bernstein<double> f = bernstein_along<double>(cell.segment);
-    const double b[4] = {sign * f.start - margin, sign * f.sum1 / 3 - margin, sign * f.sum2 / 3 - margin,
-                         sign * f.end - margin};
-    const double until = positive_until(b, 0, 1, 0);
+    const double until = positive_until(oriented(cell.segment, sign, margin), 0, 1, 0);
     if (until == 1) return false;
     result.t = std::min(frame.t(cell.in + until * (cell.out - cell.in)), ray.t_max);
     return true;
-  });
-  result.side = side.inside() ? -1 : 1;
+  };
+  if (meets_box) walk_cells(surface, frame, counts, visit);
+  // That is all, unless a sample is so near to 0 that a root may hide behind it. Ends of pieces are up to
+  // three times as far off in the other loop.
+  if (extra > 0 || static_cast<double>(surface.least_sample()) <= margin) {
+    const bool inside =
+        side.known() ? side.inside() : RayValues(level_set.grid(), ray).at(ray.t_min).value < 0;
+    look_at_all_cells(level_set, ray, inside ? -1 : 1, place_error, 3 * (margin - extra) + extra, result.t);
+  }
   return result;
 }
 

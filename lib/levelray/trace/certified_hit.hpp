@@ -12,8 +12,9 @@
 // with M the largest sample of the grid: bernstein.hpp's 16 * 2^-53 M, 150 * 2^-53 M for 50 halvings, and the
 // walk's ray, which differs from the true one by less than p voxels along each axis (32 * 2^-53 of the
 // coordinates: about ten roundings of the origin, its way to the box, and the points of planes), where f
-// changes by at most 2 M per voxel and axis. Cells without the surface bit are positive by themselves; only a
-// sample within 6 M p of 0 next to the ray could be nearer to a root than the margin says.
+// changes by at most 2 M per voxel and axis. The walk may pass a surface cell by, but for that a sample that
+// this cell shares with one without the surface bit must be within 6 M p of 0 without being 0; grids that
+// have such samples are looked at once more, cell by cell, wherever the ray is within p of them.
 #pragma once
 
 #include "levelray/core/ray.hpp"

@@ -17,8 +17,9 @@ class StartingSide {
     if (side_ == 0) side_ = interpolate(segment.corner, segment.in) < 0 ? -1 : 1;
     return side_;
   }
+  bool known() const { return side_ != 0; }
   bool inside() const { return side_ < 0; }
-  int interpolations() const { return side_ == 0; } // that the first cell will take
+  int interpolations() const { return !known(); } // that the first cell will take
 
  private:
   double side_;
