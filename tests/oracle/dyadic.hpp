@@ -50,7 +50,9 @@ class Dyadic {
   }
 
  private:
-  using Integer = boost::multiprecision::cpp_int;
+  // Up to 1024 bits, which most have, without memory of their own.
+  using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<1024>,
+                                                boost::multiprecision::et_off>;
   Dyadic(Integer mantissa, int exponent) : mantissa_(std::move(mantissa)), exponent_(exponent) {}
   void strip() {
     const auto zeros = static_cast<int>(lsb(abs(mantissa_)));

@@ -235,7 +235,7 @@ OracleAnswer RayOracle::ask(const WorldRay& ray, bool exactly) const {
   const Line line = line_of(ray, ray.t_min, ray.t_max);
   if (line.empty) return answer; // everything is outside
   if (!exactly && roots_by_long_double(ray, line, answer)) return answer;
-  roots_exactly(ray, line, answer);
+  roots_exactly(ray, line, exactly, answer);
   return answer;
 }
 

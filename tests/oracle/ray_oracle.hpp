@@ -34,6 +34,7 @@ class RayOracle {
   explicit RayOracle(const BlockGrid& grid);
 
   // The ray's t_min and t_max may be infinite; everything else must be finite, the direction not zero.
+  // `exactly`: by exact numbers throughout.
   OracleAnswer ask(const WorldRay& ray, bool exactly = false) const;
   // The sign of f at o + t d, for finite t.
   int sign_at(const WorldRay& ray, double t) const;
@@ -59,7 +60,9 @@ class RayOracle {
   enum class Which { crossed, all };
   void cells_near(const Line& line, std::vector<Cell>& cells, Real from, Real to, Which which) const;
   bool roots_by_long_double(const WorldRay& ray, const Line& line, OracleAnswer& answer) const;
-  void roots_exactly(const WorldRay& ray, const Line& line, OracleAnswer& answer) const;
+  // `throughout`: even where long double is sure.
+  void roots_exactly(const WorldRay& ray, const Line& line, bool throughout, OracleAnswer& answer) const;
+  int sure_sign(const Line& line, const Cell& cell, const float (&f)[8], Real in, Real out) const;
   int start_sign(const WorldRay& ray) const;
   const float* corner(int x, int y, int z) const; // of the dense copy, from its own lowest corner
   void corners(const int (&cell)[3], float (&f)[8]) const;

@@ -18,7 +18,24 @@ struct ExactTime {
 
 } // namespace
 
-void RayOracle::roots_exactly(const WorldRay& ray, const Line& line, OracleAnswer& answer) const {
+// The sign of f on a whole piece of the line, where long double is sure of it, within the bound that
+// roots_by_long_double has; else 0.
+int RayOracle::sure_sign(const Line& line, const Cell& cell, const float (&f)[8], Real in, Real out) const {
+  float largest = 0;
+  for (const float v : f) largest = std::max(largest, std::fabs(v));
+  const Real bound = Real(largest) * (0x1p-58L + 8 * line.place_error);
+  Real p[3], q[3];
+  for (int a = 0; a < 3; ++a) {
+    p[a] = line.o[a] + in * line.d[a] - cell.at[a];
+    q[a] = line.o[a] + out * line.d[a] - cell.at[a];
+  }
+  const RealBernstein cubic = along(f, p, q);
+  const auto [least, most] = std::minmax_element(cubic.b, cubic.b + 4);
+  return *least > bound ? 1 : *most < -bound ? -1 : 0;
+}
+
+void RayOracle::roots_exactly(const WorldRay& ray, const Line& line, bool throughout,
+                              OracleAnswer& answer) const {
   answer = {};
   answer.exactly = true;
   answer.first_sign = start_sign(ray);
@@ -94,6 +111,11 @@ void RayOracle::roots_exactly(const WorldRay& ray, const Line& line, OracleAnswe
     covered = &piece.out;
     float f[8];
     corners(piece.cell.at, f);
+    const Real in = quotient(piece.in.p, piece.in.q), out = quotient(piece.out.p, piece.out.q);
+    if (const int sure = throughout ? 0 : sure_sign(line, piece.cell, f, in, out)) {
+      see_sign(sure);
+      continue;
+    }
     // Homogeneous: with t = P / Q the weights are (offset - cell h) Q + d P and its complement to h Q.
     Dyadic weight[2][3][2];
     for (int end = 0; end < 2; ++end)
@@ -102,20 +124,24 @@ void RayOracle::roots_exactly(const WorldRay& ray, const Line& line, OracleAnswe
         weight[end][a][1] = (offset[a] - Dyadic(piece.cell.at[a]) * h) * t.q + d[a] * t.p;
         weight[end][a][0] = h * t.q - weight[end][a][1];
       }
-    const auto blossom = [&](int x, int y, int z) {
-      Dyadic sum;
-      for (int c = 0; c < 8; ++c)
-        sum = sum + Dyadic(f[c]) * weight[x][0][c & 1] * weight[y][1][c >> 1 & 1] * weight[z][2][c >> 2];
-      return sum;
-    };
+    Dyadic blossom[2][2][2]; // by the ends that x, y, z are taken from
+    for (int x = 0; x < 2; ++x) {
+      Dyadic row[4];
+      for (int r = 0; r < 4; ++r)
+        row[r] = Dyadic(f[2 * r]) * weight[x][0][0] + Dyadic(f[2 * r + 1]) * weight[x][0][1];
+      for (int y = 0; y < 2; ++y) {
+        const Dyadic low = row[0] * weight[y][1][0] + row[1] * weight[y][1][1],
+                     high = row[2] * weight[y][1][0] + row[3] * weight[y][1][1];
+        for (int z = 0; z < 2; ++z) blossom[x][y][z] = low * weight[z][2][0] + high * weight[z][2][1];
+      }
+    }
     const Dyadic &qi = piece.in.q, &qo = piece.out.q;
-    const Dyadic b0 = blossom(0, 0, 0) * qo * qo * qo, b3 = blossom(1, 1, 1) * qi * qi * qi;
-    const Dyadic b1 = (blossom(1, 0, 0) + blossom(0, 1, 0) + blossom(0, 0, 1)) * qi * qo * qo;
-    const Dyadic b2 = (blossom(1, 1, 0) + blossom(1, 0, 1) + blossom(0, 1, 1)) * qi * qi * qo;
+    const Dyadic b0 = blossom[0][0][0] * qo * qo * qo, b3 = blossom[1][1][1] * qi * qi * qi;
+    const Dyadic b1 = (blossom[1][0][0] + blossom[0][1][0] + blossom[0][0][1]) * qi * qo * qo;
+    const Dyadic b2 = (blossom[1][1][0] + blossom[1][0][1] + blossom[0][1][1]) * qi * qi * qo;
     const Dyadic three(3);
     int before = 0;
     const std::vector<ExactRoot> roots = exact_roots({{three * b0, b1, b2, three * b3}}, before);
-    const Real in = quotient(piece.in.p, piece.in.q), out = quotient(piece.out.p, piece.out.q);
     const Real rounding = 0x1p-58L * (std::fabs(in) + std::fabs(out));
     see_sign(before);
     for (const ExactRoot& root : roots) {
