@@ -65,9 +65,10 @@ std::string shell_text(const std::vector<std::string>& words) {
 void measure(const MeasureOptions& options, const std::vector<std::string>& command_line) {
   const bool own = !options.input.path.empty();
   if (own == !options.suite.empty())
-    throw Error(ErrorKind::usage, "measure takes a mesh or --suite: " + join(suite_names()));
-  const MeasureSuite suite = own ? MeasureSuite{"mesh", "", measure_mesh}
-                                 : measure_suites()[find_name("--suite", options.suite, suite_names())];
+    throw Error(ErrorKind::usage, "measure takes a mesh, a .vdb or --suite: " + join(suite_names()));
+  const MeasureSuite suite = !own ? measure_suites()[find_name("--suite", options.suite, suite_names())]
+                             : is_vdb(options.input.path) ? MeasureSuite{"grid", "", measure_grid}
+                                                          : MeasureSuite{"mesh", "", measure_mesh};
   std::vector<std::string> outputs;
   if (!options.common.json.empty() && options.common.json != "-")
     check_output(options.common.json, options.input.path, {}, outputs);
@@ -108,16 +109,18 @@ void add_measure(CLI::App& program, Work& run, const std::vector<std::string>& c
       *program.add_subcommand("measure", "Measure what methods lose, how exact and how fast they are");
   command.footer(R"(Examples:
   levelray measure statue.ply --report statue.html
+  levelray measure statue.vdb
   levelray measure --suite analytic --report accuracy.html
   levelray measure --suite analytic --resolution 64,128,256,512 --shapes sphere,torus --json accuracy.json
 
 Of a mesh: how far its level sets are from it, where it is too thin for them, and what each method gives and costs.
+Of a level set: whether it is a distance, where it is too thin, what is proven about hits, and what each method gives and costs.
 Of a suite: every method by every shape and resolution: rays that leak, meet phantoms or wrong surfaces, errors of hits and
 normals, how they shrink with the voxels, times and work. The report is one page that needs no network. Ends with 6
 where a promise is broken: exact hits that are wrong, accelerations that change an answer.)");
   std::string suites;
   for (const MeasureSuite& suite : measure_suites()) suites += fmt::format("{}: {}", suite.name, suite.help);
-  command.add_option("IN", options->input.path, "A mesh, instead of --suite");
+  command.add_option("IN", options->input.path, "A mesh or a .vdb, instead of --suite");
   command.add_option("--suite", options->suite, "What to measure. " + suites)->type_name("NAME");
   command.add_option("--report", options->report, "Write the page to FILE.html")->type_name("FILE");
   command

@@ -4,6 +4,7 @@
 #include "levelray/measure/mesh_suite.hpp"
 #include "measure_document.hpp"
 #include "measure_suites.hpp"
+#include "measure_trade.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -56,46 +57,9 @@ Json surface_table(const MeshSuiteResult& result) {
   return table.json();
 }
 
-Json trade_table(const MeshSuiteResult& result, bool normals) {
-  const std::string unit = normals ? "degrees to the face's normal" : "distances of hits from the mesh";
-  Table table(normals ? "trade-normals" : "trade-hits", std::string(normals ? "Normals: " : "Hits: ") + unit,
-              {{"resolution", "resolution"},
-               {"method", normals ? "scheme" : "intersector"},
-               {"front", "front"},
-               {"mean", "mean"},
-               {"p50", "p50"},
-               {"p99", "p99"},
-               {"max", "max"},
-               {"lost", "lost", 3, true},
-               {"ns", normals ? "ns/hit" : "ns/ray"},
-               {"megabytes", "MB"}});
-  for (const TradeRow& r : result.trade)
-    if (r.is_normals == normals)
-      table.add({r.resolution, r.method, r.in_front ? "yes" : "", r.error.mean, r.error.p50, r.error.p99,
-                 r.error.max, r.lost, r.ns, r.megabytes});
-  return table.json();
-}
-
-Json trade_plot(const MeshSuiteResult& result, bool normals, bool memory) {
-  TradePlot plot(std::string(normals ? "normals" : "hits") + (memory ? "-memory" : "-time"),
-                 std::string(normals ? "Normals" : "Hits") + (memory ? " against memory" : " against time"),
-                 memory    ? "MB"
-                 : normals ? "ns per hit"
-                           : "ns per ray",
-                 normals ? "mean angle, degrees" : "mean distance from the mesh");
-  for (const TradeRow& r : result.trade)
-    if (r.is_normals == normals)
-      plot.add(r.method, memory ? r.megabytes : r.ns, r.error.mean, fmt::format("{}", r.resolution));
-  return plot.json();
-}
-
 } // namespace
 
 void measure_mesh(const MeasureOptions& options, Progress& progress, Json& document) {
-  if (is_vdb(options.input.path))
-    throw Error(ErrorKind::usage,
-                printable(options.input.path, 300) +
-                    ": measure takes a mesh, because a .vdb does not tell what it was made of");
   const MeshSuiteSettings settings = settings_of(options);
   const LoadedMesh loaded = load_mesh(options.input);
   for (const std::string& warning : loaded.warnings) print_warning(warning);
@@ -116,10 +80,7 @@ void measure_mesh(const MeasureOptions& options, Progress& progress, Json& docum
                          {"repeat", settings.repetitions}};
   document["mesh"] = mesh_json(loaded.prepared.report);
   const Thickness& thick = result.thickness;
-  document["thickness"] = {
-      {"points", thick.points}, {"p0.1", thick.p01},        {"p1", thick.p1},
-      {"p5", thick.p5},         {"p50", thick.p50},         {"gaps", thick.gaps},
-      {"gap_p1", thick.gap_p1}, {"gap_p50", thick.gap_p50}, {"thin_share", thick.thin_share}};
+  document["thickness"] = thickness_json(thick);
 
   Json& findings = document["findings"];
   for (const SurfaceRow& row : result.surfaces)
@@ -151,14 +112,7 @@ void measure_mesh(const MeasureOptions& options, Progress& progress, Json& docum
       "Normals "
       "are compared with the nearest face's, so that facets of curved surfaces count as they are."};
   document["sections"].push_back(
-      {{"id", "trade"},
-       {"title", "The trade"},
-       {"text", "One mark for each configuration, labelled with its resolution. Large marks and the "
-                "line are the Pareto front of the two quantities shown; the tables tell that of all."},
-       {"plots",
-        {trade_plot(result, false, false), trade_plot(result, false, true), trade_plot(result, true, false),
-         trade_plot(result, true, true)}},
-       {"tables", {trade_table(result, false), trade_table(result, true)}}});
+      trade_section(result.trade, {"distances of hits from the mesh", "degrees to the face's normal"}));
   document["sections"].push_back({{"id", "surface"},
                                   {"title", "Surface"},
                                   {"text", "How far the grid's surface and the mesh are from each other."},

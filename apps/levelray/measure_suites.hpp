@@ -38,8 +38,9 @@ inline const std::vector<MeasureSuite>& measure_suites() {
   return suites;
 }
 
-// A mesh of the user's, options.input.
+// A mesh or a level set of the user's, options.input.
 void measure_mesh(const MeasureOptions& options, Progress& progress, Json& document);
+void measure_grid(const MeasureOptions& options, Progress& progress, Json& document);
 
 // Of --band. Throws Error(usage).
 double band_voxels(const MeasureOptions& options);

@@ -92,7 +92,7 @@ TEST_CASE("measure says what was wrong with its options, and leaves no files the
     CHECK(run.code == 2);
     CHECK_THAT(run.err, Catch::Contains(text));
   };
-  refused({"measure"}, "measure takes a mesh or --suite: analytic");
+  refused({"measure"}, "measure takes a mesh, a .vdb or --suite: analytic");
   refused({"measure", "--suite", "analitic"}, "analytic");
   refused({"measure", "--suite", "analytic", "--shapes", "cube"},
           "unknown shape 'cube'; there are sphere, torus");
@@ -161,4 +161,40 @@ TEST_CASE("measure tells of a mesh how far its level sets are from it, and what 
   CHECK(both.code == 2);
   const RunResult missing = run_program({"measure", folder / "none.obj"});
   CHECK(missing.code == 3);
+}
+
+TEST_CASE("measure tells of a level set what is proven about hits, how thin it is, and what the trade is") {
+  const TemporaryFolder folder;
+  // A box of 2 x 1 x 0.1, in voxels of 1/80: 8 of them thick, and its faces are flat to rounding.
+  std::ofstream(folder / "plate.obj")
+      << "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 .1\nv 2 0 .1\nv 2 1 .1\nv 0 1 .1\n"
+         "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  REQUIRE(run_program({"convert", folder / "plate.obj", folder / "plate.vdb", "--voxel", "0.0125"}).code ==
+          0);
+  const RunResult run = run_program({"measure", folder / "plate.vdb", "--rays", "2000", "--repeat", "1",
+                                     "--json", "-", "--report", folder / "m.html"});
+  INFO(run.err);
+  REQUIRE(run.code == 0);
+  const Json json = Json::parse(run.out);
+  CHECK(json["suite"] == "grid");
+  CHECK(json["field"]["is_distance"] == true);
+  CHECK(json["grid"]["voxel_size"].get<double>() == 0.0125);
+  CHECK(json["failures"].empty());
+  // Samples are floats, so faces are where they should be within 2^-24 of the band.
+  CHECK(json["thickness"]["p50"].get<double>() == Approx(0.1).margin(1e-7));
+  CHECK(json["thickness"]["thin_share"][0].get<double>() < 0.02);
+  const Json& proofs = json["sections"][1]["tables"][0]["rows"][0];
+  CHECK(proofs[0] == 2000);
+  CHECK(proofs[1].get<int>() > 100);     // hits
+  CHECK(proofs[2] == proofs[1]);         // all of them proven crossings
+  CHECK(proofs[7].get<double>() < 1e-7); // with bounds, in voxels
+  const Json& hits = json["sections"][0]["tables"][0];
+  CHECK(hits["columns"][0]["key"] == "method");
+  CHECK(hits["rows"][0][0] == "exact");
+  CHECK(hits["rows"][0][5].get<double>() < 1e-12); // the interpolant's size at the worst of exact hits
+  CHECK(hits["rows"][0][6] == 0);
+
+  const RunResult thin = run_program({"measure", folder / "plate.vdb", "--resolution", "64"});
+  CHECK(thin.code == 2);
+  CHECK_THAT(thin.err, Catch::Contains("--resolution is for meshes"));
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <mutex>
 
 namespace levelray {
 
@@ -28,14 +29,20 @@ SurfaceBlocks::SurfaceBlocks(const BlockGrid& grid) {
   if (nodes_.empty()) return;
 
   records_.resize(cells_.size() * record_floats);
+  float largest_error = 0;
+  std::mutex mutex;
   parallel_for(nodes_.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) copy_samples(grid, n, grid.nodes[sources_[n]]);
+    const std::size_t last = end < nodes_.size() ? nodes_[end].first : cells_.size();
+    float largest = 0, least = std::numeric_limits<float>::infinity();
+    for (std::size_t b = nodes_[begin].first; b < last; ++b) {
+      largest = std::max(largest, record(b)[record_error]);
+      least = std::min(least, record(b)[record_least]);
+    }
+    const std::lock_guard lock(mutex);
+    largest_error = std::max(largest_error, largest);
+    least_sample_ = std::min(least_sample_, least);
   });
-  float largest_error = 0;
-  for (std::size_t b = 0; b < cells_.size(); ++b) {
-    largest_error = std::max(largest_error, record(b)[record_error]);
-    least_sample_ = std::min(least_sample_, record(b)[record_least]);
-  }
   largest_sample_ = largest_error * 0x1p20f * (1 + 0x1p-22f); // the sum in copy_samples may be rounded down
   parallel_for(8, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t octant = begin; octant < end; ++octant) compute_leaps(static_cast<int>(octant));

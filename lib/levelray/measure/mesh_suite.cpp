@@ -73,12 +73,6 @@ double next_place(const TriangleBvh& bvh, const Vec3d& from, const Vec3d& direct
   return hit ? hit->t : -1;
 }
 
-double quantile(const std::vector<double>& sorted, double q) {
-  if (sorted.empty()) return 0;
-  return sorted[std::min(sorted.size() - 1,
-                         static_cast<std::size_t>(q * static_cast<double>(sorted.size())))];
-}
-
 Thickness thickness_of(const TriangleBvh& bvh, const std::vector<SurfacePoint>& points, double size,
                        const std::vector<double>& voxel_sizes) {
   std::vector<double> inward(points.size()), outward(points.size());
@@ -88,21 +82,7 @@ Thickness thickness_of(const TriangleBvh& bvh, const std::vector<SurfacePoint>& 
       outward[i] = next_place(bvh, points[i].position, points[i].normal, size);
     }
   });
-  for (std::vector<double>* all : {&inward, &outward}) {
-    std::erase_if(*all, [](double t) { return !(t > 0); });
-    std::sort(all->begin(), all->end());
-  }
-  Thickness result;
-  result.points = inward.size(), result.gaps = outward.size();
-  result.p01 = quantile(inward, 0.001), result.p1 = quantile(inward, 0.01);
-  result.p5 = quantile(inward, 0.05), result.p50 = quantile(inward, 0.5);
-  result.gap_p1 = quantile(outward, 0.01), result.gap_p50 = quantile(outward, 0.5);
-  for (const double h : voxel_sizes) {
-    const auto thin = std::lower_bound(inward.begin(), inward.end(), 2 * h) - inward.begin();
-    result.thin_share.push_back(static_cast<double>(thin) /
-                                static_cast<double>(std::max<std::size_t>(1, inward.size())));
-  }
-  return result;
+  return thickness_statistics(std::move(inward), std::move(outward), voxel_sizes);
 }
 
 // The winding number by the crossings of a ray: exact for closed meshes.
@@ -113,19 +93,6 @@ int winding_by_ray(const TriangleBvh& bvh, const Vec3d& p) {
   int sum = 0;
   bvh.all_hits(ray, [&](const TriangleHit& hit) { sum += hit.front ? -1 : 1; });
   return sum;
-}
-
-// Marks what nothing else of its kind beats.
-void mark_front(std::vector<TradeRow>& rows) {
-  for (TradeRow& a : rows)
-    a.in_front = std::none_of(rows.begin(), rows.end(), [&](const TradeRow& b) {
-      if (a.is_normals != b.is_normals) return false;
-      const bool no_worse =
-          b.error.mean <= a.error.mean && b.lost <= a.lost && b.ns <= a.ns && b.megabytes <= a.megabytes;
-      const bool better =
-          b.error.mean < a.error.mean || b.lost < a.lost || b.ns < a.ns || b.megabytes < a.megabytes;
-      return no_worse && better;
-    });
 }
 
 // One resolution.

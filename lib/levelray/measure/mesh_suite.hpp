@@ -4,6 +4,8 @@
 
 #include "levelray/grid/block_grid.hpp"
 #include "levelray/measure/error_statistics.hpp"
+#include "levelray/measure/thickness.hpp"
+#include "levelray/measure/trade.hpp"
 #include "levelray/mesh/prepare.hpp"
 
 #include <cstdint>
@@ -37,30 +39,9 @@ struct SurfaceRow {
   std::uint64_t wrong_signs = 0, signs = 0;
 };
 
-// The mesh's own thickness: from points of it against their normals to the next place of the mesh. Towards
-// convex edges it goes to 0, so small quantiles say more than the minimum. Likewise gaps, along the normals.
-struct Thickness {
-  std::size_t points = 0, gaps = 0;        // with something there
-  double p01 = 0, p1 = 0, p5 = 0, p50 = 0; // quantiles 0.1 %, 1 %, ... of thicknesses, world units
-  double gap_p1 = 0, gap_p50 = 0;
-  std::vector<double> thin_share; // per resolution: part of the points thinner than 2 voxels
-};
-
-// One configuration: a resolution with an intersector, or with a normal scheme.
-struct TradeRow {
-  int resolution = 0;
-  std::string method;
-  bool is_normals = false;
-  ErrorStatistics error;  // of hits: distance from the mesh in world units; of normals: degrees to the face's
-  std::uint64_t lost = 0; // leaks, phantoms and wrong surfaces against the grid's own surface, of all rays
-  double ns = 0, megabytes = 0; // per random ray, or per hit
-  bool in_front = false; // no other of its kind is better in one of error (mean), losses, time, memory and
-                         // at least as good in the others
-};
-
 struct MeshSuiteResult {
   std::vector<SurfaceRow> surfaces;
-  Thickness thickness;
+  Thickness thickness; // of the mesh
   std::vector<TradeRow> trade;
 };
 
