@@ -51,6 +51,15 @@ void observe(char& tag) {
 void publish(char&) {}
 void observe(char&) {}
 #endif
+// At the end of a scope, exceptions included: one that a chunk throws is freed by who began the loop.
+struct PublishAtEnd {
+  char& tag;
+  ~PublishAtEnd() { publish(tag); }
+};
+struct ObserveAtEnd {
+  char& tag;
+  ~ObserveAtEnd() { observe(tag); }
+};
 
 } // namespace
 
@@ -61,17 +70,18 @@ void parallel_for(std::size_t count, std::size_t grain,
   char begun = 0, done = 0;
   const Clock::time_point end = t_end;
   publish(begun);
+  const ObserveAtEnd all_done{done};
   const auto loop = [&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, chunks, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
           observe(begun);
+          const PublishAtEnd chunks_done{done};
           const InheritedLimit limit(end);
           for (std::size_t chunk = range.begin(); chunk != range.end(); ++chunk) {
             check_cancel();
             body(chunk * grain, std::min(count, (chunk + 1) * grain));
           }
-          publish(done);
         },
         tbb::simple_partitioner());
   };
@@ -81,7 +91,6 @@ void parallel_for(std::size_t count, std::size_t grain,
     tbb::task_arena(threads).execute(loop);
   else
     loop();
-  observe(done);
 }
 
 struct ThreadLimit::Impl {
