@@ -112,6 +112,7 @@ void add_measure(CLI::App& program, Work& run, const std::vector<std::string>& c
   levelray measure statue.vdb
   levelray measure --suite analytic --report accuracy.html
   levelray measure --suite analytic --resolution 64,128,256,512 --shapes sphere,torus --json accuracy.json
+  levelray measure --suite paper --models stanford --repeat 7 --report tables.html
 
 Of a mesh: how far its level sets are from it, where it is too thin for them, and what each method gives and costs.
 Of a level set: whether it is a distance, where it is too thin, what is proven about hits, and what each method gives and costs.
@@ -124,12 +125,19 @@ where a promise is broken: exact hits that are wrong, accelerations that change 
   command.add_option("--suite", options->suite, "What to measure. " + suites)->type_name("NAME");
   command.add_option("--report", options->report, "Write the page to FILE.html")->type_name("FILE");
   command
-      .add_option(
-          "--resolution", options->resolutions,
-          "Voxels along the longest side of the mesh (64,128,256), or along a length of 1, which shapes have "
-          "about (32,64,128,256)")
+      .add_option("--resolution,--resolutions", options->resolutions,
+                  "Voxels along the longest side of the mesh (64,128,256) or model (128,256,512), or along a "
+                  "length of 1, "
+                  "which shapes have about (32,64,128,256)")
       ->type_name("LIST");
   command.add_option("--shapes", options->shapes, "Of these shapes only")->type_name("LIST");
+  command
+      .add_option("--models", options->models,
+                  "The suite paper: look for its bunny, dragon and buddha in this folder and below it")
+      ->type_name("DIR");
+  command.add_option("--size", options->size, "The suite paper: pixels along each side of its pictures")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
   command.add_option("--band", options->band, "Half-width of the band, in voxels")
       ->type_name("Nvx")
       ->capture_default_str();

@@ -11,9 +11,12 @@ namespace levelray {
 
 Table::Table(const std::string& id, const std::string& title, std::vector<Column> columns) {
   json_ = {{"id", id}, {"title", title}, {"columns", Json::array()}, {"rows", Json::array()}};
-  for (const Column& c : columns)
-    json_["columns"].push_back(
-        {{"key", c.key}, {"title", c.title}, {"digits", c.digits}, {"fault", c.fault}});
+  for (const Column& c : columns) {
+    Json column = {{"key", c.key}, {"title", c.title}, {"digits", c.digits}, {"fault", c.fault}};
+    if (!c.group.empty()) column["group"] = c.group;
+    if (c.quoted) column["quoted"] = true;
+    json_["columns"].push_back(std::move(column));
+  }
 }
 
 void Table::add(Json::array_t row) {
@@ -78,6 +81,31 @@ std::string cell_text(const Json& value, int digits) {
   return fmt::format("{:.{}g}", value.get<double>(), digits);
 }
 
+// The groups' names above their first columns, the last of which are widened where names need it; empty
+// without groups.
+std::string group_line(const Json& columns, std::vector<std::size_t>& widths) {
+  for (std::size_t i = 0, end = 0; i < columns.size(); i = end) {
+    const std::string group = columns[i].value("group", "");
+    std::size_t room = 0;
+    for (end = i; end < columns.size() && columns[end].value("group", "") == group; ++end)
+      room += widths[end] + (end > i ? 2 : 0);
+    if (group.size() > room) widths[end - 1] += group.size() - room;
+  }
+  std::string line, last;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string group = columns[i].value("group", "");
+    if (group != last) {
+      line.resize(at, ' ');
+      line += group;
+      last = group;
+    }
+    at += widths[i] + 2;
+  }
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line.empty() ? line : line + "\n";
+}
+
 std::string table_text(const Json& table) {
   const Json& columns = table["columns"];
   std::vector<std::vector<std::string>> lines{{}};
@@ -91,6 +119,7 @@ std::string table_text(const Json& table) {
   std::vector<std::size_t> widths(columns.size());
   for (const auto& line : lines)
     for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  text += group_line(columns, widths);
   for (const auto& line : lines) {
     std::string row;
     for (std::size_t i = 0; i < line.size(); ++i) {

@@ -14,10 +14,10 @@ namespace levelray {
 struct MeasureOptions {
   CommonOptions common;
   InputOptions input; // its path is empty for suites
-  std::string suite, report, resolutions, shapes, band = "3vx";
+  std::string suite, report, resolutions, shapes, models, band = "3vx";
   std::size_t rays = 8192;
   std::uint64_t seed = 1;
-  int repeat = 3;
+  int repeat = 3, size = 512;
 };
 
 struct MeasureSuite {
@@ -30,11 +30,13 @@ struct MeasureSuite {
 
 void measure_analytic(const MeasureOptions& options, Progress& progress, Json& document);
 void measure_openvdb(const MeasureOptions& options, Progress& progress, Json& document);
+void measure_paper(const MeasureOptions& options, Progress& progress, Json& document);
 
 inline const std::vector<MeasureSuite>& measure_suites() {
   static const std::vector<MeasureSuite> suites{
       {"analytic", "shapes whose distance, hits and normals are known without a grid", measure_analytic},
-      {"openvdb", "the same grids and rays through OpenVDB's tracer and ours", measure_openvdb}};
+      {"openvdb", "the same grids and rays through OpenVDB's tracer and ours", measure_openvdb},
+      {"paper", "Tables 1 to 4 of Jamriska 2010, ours beside the printed figures", measure_paper}};
   return suites;
 }
 

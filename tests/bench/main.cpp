@@ -3,8 +3,8 @@
 #include "bench/trace_contest.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/mesh_reader.hpp"
+#include "levelray/measure/study_scene.hpp"
 #include "support/knobbly_mesh.hpp"
-#include "support/study_scene.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ int main(int argc, char** argv) try {
              bench::has_embree() ? "3" : "not found when this was built",
              machine["load_average"].get<double>());
   const TriangleMesh mesh =
-      test::centred_unit_mesh(mesh_path.empty() ? test::knobbly_mesh() : read_mesh(mesh_path).mesh);
+      centred_unit_mesh(mesh_path.empty() ? test::knobbly_mesh() : read_mesh(mesh_path).mesh);
   fmt::print("{}: {} triangles\n\n", mesh_path.empty() ? "knobbly ball" : mesh_path, mesh.triangles.size());
 
   nlohmann::json results{{"machine", machine},

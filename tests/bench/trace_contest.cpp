@@ -3,9 +3,9 @@
 #include "levelray/accel/minmax_buffer.hpp"
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/measure/study_scene.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "levelray/vdb/peer.hpp"
-#include "support/study_scene.hpp"
 #ifdef LEVELRAY_EMBREE
 #include "support/embree_scene.hpp"
 #endif
@@ -91,9 +91,9 @@ nlohmann::json trace_contest(const TriangleMesh& mesh, const TraceSetup& setup) 
   options.resolution = setup.resolution;
   const BlockGrid grid = mesh_to_grid(prepare_mesh(mesh), options).grid;
   const double voxel = grid.transform.voxel_size;
-  const Camera camera = test::study_camera(setup.image_size);
+  const Camera camera = study_camera(setup.image_size);
   const auto pixels = tiled_pixels(setup.image_size);
-  const std::vector<WorldRay> rays = test::study_rays(setup.image_size);
+  const std::vector<WorldRay> rays = study_rays(setup.image_size);
   PinholeView view{camera.settings().eye, camera.right(), camera.up(), camera.forward()};
   view.half_width = view.half_height = camera.half_height();
   const LevelSet level_set(grid);

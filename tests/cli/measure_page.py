@@ -141,10 +141,14 @@ def check(browser, page, document, word):
         assert browser.evaluate(f"{at}.querySelectorAll('tbody tr').length") == len(table["rows"]), table["id"]
         # Sorting by the last column, both ways.
         key = len(table["columns"]) - 1
+        assert browser.evaluate(f"[...{at}.querySelectorAll('th[scope=col]')].map(e => e.textContent).join()") == \
+            ",".join(c["title"] for c in table["columns"]), table["id"]
+        groups = browser.evaluate(f"[...{at}.querySelectorAll('th[scope=colgroup]')].flatMap(e => Array(e.colSpan).fill(e.textContent))")
+        assert groups == ([c.get("group", "") for c in table["columns"]] if any("group" in c for c in table["columns"]) else [])
         values = [r[key] for r in table["rows"] if r[key] is not None]
         for _ in range(2):
             browser.evaluate(f"{at}.querySelectorAll('th [role=button]')[{key}].click()")
-            rising = browser.evaluate(f"{at}.querySelectorAll('th')[{key}].getAttribute('aria-sort')") == "ascending"
+            rising = browser.evaluate(f"{at}.querySelectorAll('th[scope=col]')[{key}].getAttribute('aria-sort')") == "ascending"
             expected = sorted(values, reverse=not rising)
             first = browser.evaluate(f"{at}.querySelector('tbody tr').children[{key}].textContent")
             assert first == browser.evaluate(f"shown({json.dumps(expected[0])}, {table['columns'][key]['digits']})")
@@ -211,7 +215,10 @@ def main(program, pictures=None):
         try:
             browser.attach()
             # A word that is in some rows, and what to measure.
+            os.mkdir(os.path.join(folder, "models"))
+            write_torus(os.path.join(folder, "models", "bunny.obj"))
             for name, word, arguments in (("suite", "sphere", ["--suite", "analytic", "--resolution", "16,24,40"]),
+                                          ("paper", "bunny", ["--suite", "paper", "--models", "models", "--resolution", "128,24"]),
                                           ("mesh", "exact", ["torus.obj", "--resolution", "16,32"])):
                 page, data = (os.path.join(folder, name + end) for end in (".html", ".json"))
                 subprocess.run([program, "measure", *arguments, "-q", "--rays", "256", "--repeat", "1", "--report", page,

@@ -12,10 +12,10 @@ TEST_CASE("hits on the bunny's level set are those on its triangles") {
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/mesh_reader.hpp"
+#include "levelray/measure/study_scene.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "levelray/vdb/peer.hpp"
 #include "support/embree_scene.hpp"
-#include "support/study_scene.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

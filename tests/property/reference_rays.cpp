@@ -5,10 +5,10 @@
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/parallel.hpp"
 #include "levelray/io/mesh_reader.hpp"
+#include "levelray/measure/study_scene.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "support/catch.hpp"
 #include "support/reference_tracer.hpp"
-#include "support/study_scene.hpp"
 #include "support/trace_fixtures.hpp"
 
 #include <atomic>

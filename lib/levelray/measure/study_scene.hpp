@@ -1,5 +1,5 @@
-// The scene of the measurements: a mesh centred on the origin with a longest side of 1, seen from direction
-// (0.35, 0.30, 1) through 45 degrees.
+// The scene of the measurements with meshes: a mesh centred on the origin with a longest side of 1, seen from
+// direction (0.35, 0.30, 1) through 45 degrees.
 #pragma once
 
 #include "levelray/measure/ray_sets.hpp"
@@ -7,9 +7,10 @@
 #include "levelray/render/camera.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
-namespace levelray::test {
+namespace levelray {
 
 inline TriangleMesh centred_unit_mesh(TriangleMesh mesh) {
   const Box3d box = mesh.bounds();
@@ -34,4 +35,4 @@ inline std::vector<WorldRay> study_rays(int size) {
   return primary_rays(study_camera(size));
 }
 
-} // namespace levelray::test
+} // namespace levelray
