@@ -246,10 +246,10 @@ Json paper_trend_table(const std::vector<PaperTrend>& trends) {
   Table table("trends", "The paper's claims",
               {{"table", "table"},
                {"claim", "claim"},
+               {"agrees", "agrees"},
                {"ours", "ours"},
-               {"printed", "paper", 3, false, "", true},
-               {"agrees", "agrees"}});
-  for (const PaperTrend& t : trends) table.add({t.table, t.claim, t.ours, t.printed, t.agrees});
+               {"printed", "paper", 3, false, "", true}});
+  for (const PaperTrend& t : trends) table.add({t.table, t.claim, t.agrees, t.ours, t.printed});
   return table.json();
 }
 
