@@ -120,7 +120,8 @@ Of a suite: every method by every shape and resolution: rays that leak, meet pha
 normals, how they shrink with the voxels, times and work. The report is one page that needs no network. Ends with 6
 where a promise is broken: exact hits that are wrong, accelerations that change an answer.)");
   std::string suites;
-  for (const MeasureSuite& suite : measure_suites()) suites += fmt::format("{}: {}", suite.name, suite.help);
+  for (const MeasureSuite& suite : measure_suites())
+    suites += fmt::format("{}{}: {}", suites.empty() ? "" : "; ", suite.name, suite.help);
   command.add_option("IN", options->input.path, "A mesh or a .vdb, instead of --suite");
   command.add_option("--suite", options->suite, "What to measure. " + suites)->type_name("NAME");
   command.add_option("--report", options->report, "Write the page to FILE.html")->type_name("FILE");

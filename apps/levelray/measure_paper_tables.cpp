@@ -40,7 +40,7 @@ Json method_table(const std::string& id, const std::string& title, const Printed
     const PrintedMethod* p = printed_of(m.method);
     const std::string group = p ? std::string(p->title) : m.method + " (not in the paper)";
     columns.push_back({m.method, "ours", 3, false, group});
-    if (p) columns.push_back({m.method + "_printed", "paper", 3, false, group, true});
+    if (p) columns.push_back({m.method + "_printed", "paper", 4, false, group, true});
   }
   Table table(id, title, columns);
   for (const std::string& figure : figures) {
@@ -81,7 +81,7 @@ Json scene_table(const std::vector<PaperRow>& rows, int image_size, bool shadows
   std::vector<Column> columns{{"model", "model"}, {"resolution", "resolution"}, {"voxels", "voxels"}};
   const auto add_column = [&](const std::string& key, const std::string& title, const std::string& group) {
     columns.push_back({key, title, 3, false, group});
-    if (compare) columns.push_back({key + "_printed", "paper", 3, false, group, true});
+    if (compare) columns.push_back({key + "_printed", "paper", 4, false, group, true});
   };
   if (compare) columns.push_back({"voxels_printed", "paper", 3, false, "", true});
   std::vector<std::string> groups{shadows ? "no acceleration" : "without buffers"};

@@ -7,6 +7,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 using namespace levelray;
 using namespace levelray::test;
@@ -86,6 +88,29 @@ TEST_CASE("measure has Tables 1 to 4 of the paper, of shapes of its own where th
   const Json ways = table(json, "shadow-ways");
   CHECK(ways["rows"].size() == 4 * 8);
   for (const Json& row : ways["rows"]) CHECK(row[column(ways, "different")] == 0);
+}
+
+TEST_CASE("measure prints the paper's figures behind ours, under the paper's headings") {
+  const RunResult run =
+      run_program({"measure", "--suite", "paper", "--resolution", "16", "--size", "32", "--repeat", "0"});
+  INFO(run.err);
+  REQUIRE(run.code == 0);
+  const std::string title = "Table 2: surface normals\n";
+  const std::size_t at = run.out.find(title);
+  REQUIRE(at != std::string::npos);
+  std::istringstream lines(run.out.substr(at + title.size()));
+  std::string groups, heads, samples;
+  std::getline(lines, groups), std::getline(lines, heads), std::getline(lines, samples);
+  INFO(groups << "\n" << heads << "\n" << samples);
+  for (const char* group :
+       {"analytic derivative", "difference of interpolations", "interpolation of differences"}) {
+    const std::size_t place = groups.find(group);
+    REQUIRE(place != std::string::npos);
+    CHECK(heads.compare(place, 4, "ours") == 0);
+  }
+  std::istringstream words(samples);
+  const std::vector<std::string> found{std::istream_iterator<std::string>(words), {}};
+  CHECK(found == std::vector<std::string>{"#samples", "8", "8", "20", "16", "32", "24"});
 }
 
 TEST_CASE("measure puts the paper's figures beside those of models, and says where missing ones are") {
