@@ -149,6 +149,8 @@ TEST_CASE("measure tells of a mesh how far its level sets are from it, and what 
     CHECK(row[4].get<double>() < 0.87); // interpolation moves the surface by sqrt(3)/2 voxels at the most
     CHECK(row[10].get<int>() > 300);    // signs looked at
     CHECK(row[11] == 0);                // and wrong
+    CHECK(row[12] == 1000);             // rays whose first place on the mesh is bracketed
+    CHECK(row[14] == 0);                // wrongly
   }
   bool front = false;
   for (const Json& row : json["sections"][0]["tables"][0]["rows"]) {

@@ -237,6 +237,19 @@ ConvertPlan plan_conversion(const PreparedMesh& mesh, const ConvertOptions& opti
   return plan;
 }
 
+namespace {
+
+// How far the interpolant of exact samples may be from their field where that changes by no more than the way
+// between two points, as distances do, and signed ones whose sign changes on the surface alone: it is a mean
+// of corner values, each off by the distance to its corner at most, so by Cauchy and Schwarz
+// h sqrt(sum x (1-x)) <= sqrt(3)/2 h. With the samples' own error, 1e-5 h (README.md) and a rounding to
+// float.
+double interpolation_error(double voxel_size, float background) {
+  return voxel_size * (0.8660254037844387 + 1e-5) + 0x1p-24 * static_cast<double>(background);
+}
+
+} // namespace
+
 ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& options) {
   const ConvertPlan plan = plan_conversion(mesh, options);
   const auto progress = [&](const char* stage, double done) {
@@ -304,6 +317,10 @@ ConvertedGrid mesh_to_grid(const PreparedMesh& mesh, const ConvertOptions& optio
   const Clock::time_point assemble_start = Clock::now();
   result.grid = assemble_grid(band, sides, transform, options.half_width_voxels, &report.inside_samples);
   report.distance_ms += ms_since(assemble_start);
+  const bool by_winding = report.sign == SignMethod::winding || report.sign == SignMethod::winding_abs;
+  if ((mesh.report.closed && by_winding) ||
+      report.sign == SignMethod::unsigned_distance) // sheets are that, too
+    result.grid.field_error = interpolation_error(plan.voxel_size, result.grid.background);
   if (radius > 0 && 2 * radius < safe_thickness_voxels * (1 - 1e-9))
     report.warnings.push_back(
         fmt::format("the sheet is {:.3g} voxels thick; below {:.3g} it may have holes: try "

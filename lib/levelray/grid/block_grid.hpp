@@ -11,6 +11,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class BlockGrid {
   GridTransform transform;
   float background = 0; // world units, > 0: what a sample outside the band is worth, with its sign
   std::string name = "surface";
+  // World units, where it is known: nowhere is the interpolant farther from the signed distance to the
+  // surface that the grid was made from, cut at +-background. Not kept in files, which anybody may edit.
+  std::optional<double> field_error;
 
   // The node table covers node coordinates node_min .. node_min + node_dims - 1, x fastest. Everything beyond
   // it is outside.

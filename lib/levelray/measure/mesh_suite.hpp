@@ -37,6 +37,9 @@ struct SurfaceRow {
   // (counted by the crossings of a ray; inside where it is not 0), of all such places. Closed meshes only:
   // else 0 of 0.
   std::uint64_t wrong_signs = 0, signs = 0;
+  // Random rays for which trace/certified_hit brackets the mesh by the grid's own error (`bracketed`, the
+  // hits among them with an end behind), and those whose first place on the mesh is not in there: none.
+  std::uint64_t brackets = 0, bracketed = 0, unbracketed = 0;
 };
 
 struct MeshSuiteResult {

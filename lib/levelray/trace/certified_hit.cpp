@@ -261,4 +261,9 @@ SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, 
   return result;
 }
 
+SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, const Hit& hit) {
+  if (const auto& error = level_set.grid().field_error) return bracket_original(level_set, ray, hit, *error);
+  return {ray.t_min, infinite};
+}
+
 } // namespace levelray

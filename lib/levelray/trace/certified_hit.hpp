@@ -50,13 +50,14 @@ CertifiedHit certify(const LevelSet& level_set, const WorldRay& ray, const Hit& 
 // Where the surface that the grid was made from lies, if the samples' interpolant is nowhere farther than
 // `field_error` (world units, at least 0) from that surface's signed distance (or any field of its signs):
 // its first crossing is in [t_lo, t_hi], t_hi infinite where no place within 16 voxels behind the hit is sure
-// to lie on the other side. What a conversion's field error is, is not known to a grid: mesh_to_grid's
-// samples are exact to float, so it is that of interpolating, at most h^2 / 8 * (sup |f_xx| + sup |f_yy| +
-// sup |f_zz|) where smooth (h^2 / (4 R) on a sphere), and up to 0.87 voxel at creases.
+// to lie on the other side. Without a number it is the grid's own field_error, which conversions of closed
+// meshes know, sqrt(3)/2 voxels; where that is unknown, the bracket is the ray's whole interval. Fields that
+// are smooth have less: h^2 / 8 * (sup |f_xx| + sup |f_yy| + sup |f_zz|), h^2 / (4 R) on a sphere.
 struct SurfaceBracket {
   double t_lo = 0, t_hi = 0;
 };
 SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, const Hit& hit,
                                 double field_error);
+SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, const Hit& hit);
 
 } // namespace levelray
