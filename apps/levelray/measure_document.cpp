@@ -15,6 +15,7 @@ Table::Table(const std::string& id, const std::string& title, std::vector<Column
     Json column = {{"key", c.key}, {"title", c.title}, {"digits", c.digits}, {"fault", c.fault}};
     if (!c.group.empty()) column["group"] = c.group;
     if (c.quoted) column["quoted"] = true;
+    if (c.prose) column["prose"] = true;
     json_["columns"].push_back(std::move(column));
   }
 }
@@ -123,6 +124,7 @@ std::string table_text(const Json& table) {
   for (const auto& line : lines) {
     std::string row;
     for (std::size_t i = 0; i < line.size(); ++i) {
+      if (columns[i].contains("prose")) continue;
       const bool left = !table["rows"].empty() && table["rows"][0][i].is_string();
       row += left ? fmt::format("{}{:<{}}", i ? "  " : "", line[i], widths[i])
                   : fmt::format("{}{:>{}}", i ? "  " : "", line[i], widths[i]);

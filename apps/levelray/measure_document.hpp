@@ -14,17 +14,19 @@
 namespace levelray {
 
 // A column of a table: its values are texts or numbers (null: none), the latter shown with that many
-// significant digits. `fault`: numbers other than 0 are faults, and shown as such. Neighbours of one `group`
-// have it as a heading above theirs. `quoted`: somebody else's figure, shown behind ours.
+// significant digits. `fault`: numbers other than 0, and the word "red", are faults, and shown as such.
+// Neighbours of one `group` have it as a heading above theirs. `quoted`: somebody else's figure, shown behind
+// ours. `prose`: sentences, which the page breaks into lines, and the text leaves out.
 struct Column {
   std::string key, title;
   int digits = 3;
   bool fault = false;
   std::string group = {};
   bool quoted = false;
+  bool prose = false;
 };
 
-// {id, title, columns: [{key, title, digits, fault; group, quoted where there are}], rows: [[value]]}
+// {id, title, columns: [{key, title, digits, fault; group, quoted, prose where there are}], rows: [[value]]}
 class Table {
  public:
   Table(const std::string& id, const std::string& title, std::vector<Column> columns);

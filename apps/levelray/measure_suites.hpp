@@ -31,12 +31,16 @@ struct MeasureSuite {
 void measure_analytic(const MeasureOptions& options, Progress& progress, Json& document);
 void measure_openvdb(const MeasureOptions& options, Progress& progress, Json& document);
 void measure_paper(const MeasureOptions& options, Progress& progress, Json& document);
+void measure_extremes(const MeasureOptions& options, Progress& progress, Json& document);
 
 inline const std::vector<MeasureSuite>& measure_suites() {
   static const std::vector<MeasureSuite> suites{
       {"analytic", "shapes whose distance, hits and normals are known without a grid", measure_analytic},
       {"openvdb", "the same grids and rays through OpenVDB's tracer and ours", measure_openvdb},
-      {"paper", "Tables 1 to 4 of Jamriska 2010, ours beside the printed figures", measure_paper}};
+      {"paper", "Tables 1 to 4 of Jamriska 2010, ours beside the printed figures", measure_paper},
+      {"extremes",
+       "rays, cells, grids, shapes, meshes, files and machines at the edge, each right, refused or wrong",
+       measure_extremes}};
   return suites;
 }
 

@@ -160,7 +160,7 @@ def check(browser, page, document, word):
     assert browser.evaluate("document.getElementById('command').textContent") == document["command"]
     assert document["machine"]["processor"] in browser.evaluate("document.getElementById('machine').textContent")
     # Failures come before everything else that was measured.
-    assert browser.evaluate("""document.getElementById('failures').compareDocumentPosition(document.querySelector('figure')) ==
+    assert browser.evaluate("""document.getElementById('failures').compareDocumentPosition(document.querySelector('figure, table')) ==
         Node.DOCUMENT_POSITION_FOLLOWING""")
     assert browser.evaluate("document.documentElement.scrollWidth <= window.innerWidth"), "the page is wider than the window"
 
@@ -219,7 +219,8 @@ def main(program, pictures=None):
             write_torus(os.path.join(folder, "models", "bunny.obj"))
             for name, word, arguments in (("suite", "sphere", ["--suite", "analytic", "--resolution", "16,24,40"]),
                                           ("paper", "bunny", ["--suite", "paper", "--models", "models", "--resolution", "128,24"]),
-                                          ("mesh", "exact", ["torus.obj", "--resolution", "16,32"])):
+                                          ("mesh", "exact", ["torus.obj", "--resolution", "16,32"]),
+                                          ("extremes", "refused", ["--suite", "extremes"])):
                 page, data = (os.path.join(folder, name + end) for end in (".html", ".json"))
                 subprocess.run([program, "measure", *arguments, "-q", "--rays", "256", "--repeat", "1", "--report", page,
                                 "--json", data], check=True, cwd=folder)

@@ -67,7 +67,10 @@ bool enter_box(const SurfaceBlocks& surface, const GridTransform& transform, con
   const double start = frame.from_outside ? enter : first;
   const double stop = std::min(leave, last);
   if (!(start <= stop)) return false;
-  frame.last = frame.end = stop - start;
+  // Where the ray leaves the box, its planes' times in the frame decide, which stop may miss by rounding:
+  // cells end on the hull exactly, where samples are positive. So the end lies beyond it; the table has no
+  // more nodes.
+  frame.last = frame.end = leave < last ? std::min(stop - start + 1, last - start) : stop - start;
   frame.t_at_start = frame.from_outside ? start * scale : ray.t_min;
 
   // Begin there.

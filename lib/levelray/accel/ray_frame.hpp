@@ -17,7 +17,7 @@ struct RayFrame {
   double inverse[3];   // 1 / max(direction, 2^-100): never infinite, so that a plane through the origin is
                        // crossed at 0 and not at NaN, and other planes of a parallel ray are 2^47 voxels away
                        // at the least
-  double end;          // the last s, >= 0
+  double end;          // the last s, >= 0; up to 1 beyond the box
   double t_at_start;   // t = t_at_start + s * t_per_s
   double t_per_s;
   int octant;            // bit a: axis a is mirrored

@@ -38,7 +38,9 @@ struct Hit {
   double t = 0;             // along the ray's own direction
   double t_outside = 0; // the last point, before t, whose value is proven to lie safely on the ray's starting
                         // side: start secondary rays there, without an epsilon; the ray's beginning where
-                        // there is no such point
+                        // there is no such point. The proof allows for the rounding of places
+                        // up to 2^14 voxels away, and for samples next to the place's block that are up to
+                        // 2^8 times as large as those in it; else f has to be looked at (field_probe.hpp)
   Vec3i cell{0, 0, 0};  // the cell that holds the hit
   RayCounts counts;
 

@@ -4,6 +4,7 @@
 #include "levelray/accel/occluder_walk.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/intersect/intersectors.hpp"
+#include "levelray/trace/field_probe.hpp"
 #include "levelray/trace/grid_cell.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "levelray/trace/starting_side.hpp"
@@ -72,12 +73,56 @@ struct PlainWalk {
   }
 };
 
-// The time of the frame's end may be rounded up beyond the interval's.
+// The time of the frame's end may be rounded up beyond the interval's, and so may that of a place before its
+// beginning.
 Hit within(const WorldRay& ray, Hit hit) {
   hit.t = std::min(hit.t, ray.t_max);
-  hit.t_outside = std::min(hit.t_outside, ray.t_max);
+  hit.t_outside = std::min(std::max(hit.t_outside, ray.t_min), ray.t_max);
   return hit;
 }
+
+// Whether other rays may begin at root.outside: f exceeds 2^-36 of the block's largest sample there. What an
+// intersector sees of a cell is the cubic along the segment, whose coefficients are all small where a ray
+// just cuts a corner by a zero sample, and say nothing of how fast f changes there.
+bool is_safe(const CellSegment& segment, double side, const CellRoot& root) {
+  return root.outside >= 0 &&
+         side * interpolate(segment.corner, point_at(segment, root.outside)) >
+             0x1p-16 * static_cast<double>(segment.error); // which is 2^-20 of that sample
+}
+
+// Where cells began in which nothing was found, the last of them. A ray that passes a zero sample by less
+// than rounding finds nothing there either, so f is looked at before another ray begins at such a place.
+class PassedCells {
+ public:
+  void add(double in) { in_[count_++ % size] = in; }
+
+  // The last s where f is safely on that side; else the frame's beginning, or, where that is the box's hull,
+  // a voxel before it.
+  double outside(const LevelSet& level_set, const RayFrame& frame, double side) const {
+    for (unsigned k = 1; k <= size && k <= count_; ++k) {
+      const double s = in_[(count_ - k) % size];
+      if (lies_on_side(level_set.grid(), place(level_set, frame, s), side)) return s;
+    }
+    return frame.from_outside && !lies_on_side(level_set.grid(), place(level_set, frame, 0), side) ? -1 : 0;
+  }
+
+ private:
+  static constexpr unsigned size = 4;
+
+  static Vec3d place(const LevelSet& level_set, const RayFrame& frame, double s) {
+    const SurfaceBlocks& surface = level_set.surface();
+    Vec3d voxel;
+    for (int a = 0; a < 3; ++a) {
+      const double x = frame.origin[a] + s * frame.direction[a];
+      voxel[a] = node_dim * double(surface.node_min()[a]) +
+                 (frame.octant >> a & 1 ? node_dim * double(surface.node_dims()[a]) - x : x);
+    }
+    return level_set.grid().transform.to_world(voxel);
+  }
+
+  double in_[size];
+  unsigned count_ = 0;
+};
 
 RayCounts ray_counts(const WalkCounts& walked, int interpolations) {
   return {walked.steps(), walked.cells, static_cast<std::uint32_t>(interpolations), 8 * walked.cells};
@@ -89,17 +134,19 @@ template <class Intersector, class Walk>
   StartingSide side(frame);
   WalkCounts walked;
   int interpolations = side.interpolations();
-  double proven = 0; // s of the last point known to lie on the starting side
+  PassedCells passed;
   Walk::walk(level_set.surface(), frame, walked, [&](const VisitedCell& cell) {
     CellRoot root;
     if (!Intersector::find(cell.segment, side.at_first(cell.segment), root,
                            [&](int n) { interpolations += n; })) {
-      proven = cell.in;
+      passed.add(cell.in);
       return false;
     }
     hit.status = HitStatus::hit;
     hit.t = frame.t(cell.in + root.at * (cell.out - cell.in));
-    hit.t_outside = frame.t(root.outside >= 0 ? cell.in + root.outside * (cell.out - cell.in) : proven);
+    hit.t_outside = frame.t(is_safe(cell.segment, side.at_first(cell.segment), root)
+                                ? cell.in + root.outside * (cell.out - cell.in)
+                                : passed.outside(level_set, frame, side.at_first(cell.segment)));
     hit.cell = grid_cell(level_set.surface(), frame, cell.position);
     return true;
   });
