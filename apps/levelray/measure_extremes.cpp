@@ -1,6 +1,8 @@
 // The suite `extremes` as a document: one table of verdicts, failures first.
 #include "levelray/core/error.hpp"
+#include "levelray/io/extreme_mesh_files.hpp"
 #include "levelray/measure/extremes.hpp"
+#include "levelray/vdb/extreme_vdb_files.hpp"
 #include "measure_document.hpp"
 #include "measure_suites.hpp"
 
@@ -13,7 +15,9 @@ namespace levelray {
 void measure_extremes(const MeasureOptions& options, Progress& progress, Json& document) {
   ExtremeSettings settings;
   settings.seed = options.seed;
-  const std::vector<ExtremeRow> rows = extreme_rows();
+  std::vector<ExtremeRow> rows = extreme_rows();
+  for (const auto& group : {extreme_mesh_file_rows, extreme_vdb_rows})
+    for (ExtremeRow& row : group()) rows.push_back(std::move(row));
   std::vector<ExtremeResult> results;
   progress.begin("measuring", 0, "");
   for (const ExtremeRow& row : rows) {

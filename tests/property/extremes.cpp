@@ -1,6 +1,8 @@
 // The rows of `levelray measure --suite extremes`: every one green or a documented refusal. Here they run
 // under sanitizers, too.
 #include "levelray/measure/extremes.hpp"
+#include "levelray/io/extreme_mesh_files.hpp"
+#include "levelray/vdb/extreme_vdb_files.hpp"
 #include "support/catch.hpp"
 
 using namespace levelray;

@@ -181,5 +181,23 @@ const char* distance_kernel_target() {
   return HWY_DYNAMIC_DISPATCH(Target)();
 }
 
+std::vector<std::string> distance_kernel_targets() {
+  use_distance_kernel_target("");
+  std::vector<std::string> names;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    names.push_back(hwy::TargetName(target));
+  return names;
+}
+
+void use_distance_kernel_target(const std::string& name) {
+  hwy::SetSupportedTargetsForTest(0); // all
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    if (hwy::TargetName(target) == name) {
+      hwy::SetSupportedTargetsForTest(target);
+      break;
+    }
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
 } // namespace levelray
 #endif

@@ -5,6 +5,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace levelray {
 
@@ -35,5 +37,9 @@ void square_roots(float values[64]);
 
 // The name of the instruction set in use, for reports.
 const char* distance_kernel_target();
+// The names of all that this build has code for and this processor can run, the best one first.
+std::vector<std::string> distance_kernel_targets();
+// Chooses one of them, to compare; "" goes back to the best. Not while others compute.
+void use_distance_kernel_target(const std::string& name);
 
 } // namespace levelray

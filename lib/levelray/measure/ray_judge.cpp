@@ -158,8 +158,8 @@ void RayJudge::cells_near(const Line& line, std::vector<Cell>& cells) const {
           for (const float value : f) cell.largest = std::max(cell.largest, std::fabs(value));
           Extended p[3], q[3];
           for (int a = 0; a < 3; ++a) {
-            p[a] = std::clamp<Extended>(line.at(a, cell.in) - at[a], 0, 1);
-            q[a] = std::clamp<Extended>(line.at(a, cell.out) - at[a], 0, 1);
+            p[a] = line.at(a, cell.in) - at[a]; // beyond the cell by place_error at most
+            q[a] = line.at(a, cell.out) - at[a];
           }
           cell.f = along(f, p, q);
           cells.push_back(cell);

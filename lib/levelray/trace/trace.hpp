@@ -8,6 +8,9 @@
 // fine, and so is an interval that begins before 0. A direction that is zero, infinite or beyond those
 // lengths, t_min > t_max, or a NaN anywhere is a miss. No ray makes these functions hang or throw, but for an
 // unknown intersector.
+//
+// Hosts may flush denormals, which changes no bit of hits but where samples are denormal themselves, and
+// round as they like: hits are right, by twice the rounding. What certify proves needs round to nearest.
 #pragma once
 
 #include "levelray/accel/minmax_buffer.hpp"
