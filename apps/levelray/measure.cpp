@@ -118,7 +118,7 @@ Of a mesh: how far its level sets are from it, where it is too thin for them, an
 Of a level set: whether it is a distance, where it is too thin, what is proven about hits, and what each method gives and costs.
 Of a suite: every method by every shape and resolution: rays that leak, meet phantoms or wrong surfaces, errors of hits and
 normals, how they shrink with the voxels, times and work. The report is one page that needs no network. Ends with 6
-where a promise is broken: exact hits that are wrong, accelerations that change an answer.)");
+where a promise is broken: exact hits that are wrong, accelerations that change an answer, extremes that are red.)");
   std::string suites;
   for (const MeasureSuite& suite : measure_suites())
     suites += fmt::format("{}{}: {}", suites.empty() ? "" : "; ", suite.name, suite.help);

@@ -226,6 +226,10 @@ def main(program, pictures=None):
                                 "--json", data], check=True, cwd=folder)
                 with open(data, encoding="utf-8") as file:
                     document = json.load(file)
+                if name == "extremes":
+                    verdicts = [r[0] for r in document["sections"][0]["tables"][0]["rows"]]
+                    assert verdicts.count("green") == document["verdicts"]["green"] > 50, document["verdicts"]
+                    assert verdicts.count("refused") == document["verdicts"]["refused"] > 10, document["verdicts"]
                 check(browser, page, document, word)
                 appearance(browser, pictures, name)
                 print(f"{name}: {sum(len(s['plots']) for s in document['sections'])} plots, "

@@ -22,9 +22,9 @@ enum class Around { outside, itself };
 
 // The cell at `at`, with a margin of three samples.
 BlockGrid cell_grid(const Corners& f, const Vec3i& at, Around around) {
-  float largest = 1;
+  float largest = 0;
   for (const float v : f) largest = std::max(largest, std::fabs(v));
-  const float background = std::min(4 * largest, FLT_MAX);
+  const float background = largest > 0 ? std::min(4 * largest, FLT_MAX) : 1; // no other size comes in
   return grid_of_samples(
       at - Vec3i(3, 3, 3), Vec3i(8, 8, 8),
       [&](int i, int j, int k) {
