@@ -28,13 +28,11 @@ std::string flaws(const MeshReport& r) {
   return text;
 }
 
-// Tells mesh, voxels and the price of the conversion before it begins.
-void announce(const InputOptions& input, const ConvertOptions& options, const ConvertPlan& plan,
-              const MeshReport& report) {
+// Tells voxels and the price of the conversion before it begins.
+void announce(const InputOptions& input, const ConvertOptions& options, const ConvertPlan& plan) {
   const std::string by =
       options.voxel_size > 0 ? "" : fmt::format(" (longest side = {})", options.resolution);
   const std::string unit = input.units.empty() ? "" : " " + input.units;
-  print(fmt::format("{}: {}\n", printable(input.path, 300), describe_mesh(report, input.units)));
   print(fmt::format("voxel {:.4g}{}{}, grid {} x {} x {}, band {:.4g} voxels; needs about {} and {}\n",
                     plan.voxel_size, unit, by, plan.dims.x, plan.dims.y, plan.dims.z,
                     options.half_width_voxels, bytes_text(plan.bytes),
@@ -82,16 +80,26 @@ LoadedMesh load_mesh(const InputOptions& options, bool sheet) {
 
 LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conversion,
                         const CommonOptions& common, Progress& progress,
-                        void (*check_plan)(const ConvertPlan&)) {
+                        void (*check_plan)(const ConvertPlan&), const MeshConverter& convert) {
   conversion.check();
   parse_unit(input.units);
   LoadedMesh mesh = load_mesh(input, !conversion.thicken.empty());
   ConvertOptions options = conversion.resolve(mesh.prepared.report.bounds, input);
   ConvertedGrid converted;
   try {
-    const ConvertPlan plan = plan_conversion(mesh.prepared, options);
-    if (check_plan) check_plan(plan);
-    if (common.talks()) announce(input, options, plan, mesh.prepared.report);
+    const auto tell_mesh = [&] {
+      if (common.talks())
+        print(fmt::format("{}: {}\n", printable(input.path, 300),
+                          describe_mesh(mesh.prepared.report, input.units)));
+    };
+    if (!convert) {
+      const ConvertPlan plan = plan_conversion(mesh.prepared, options);
+      if (check_plan) check_plan(plan);
+      tell_mesh();
+      if (common.talks()) announce(input, options, plan);
+    } else {
+      tell_mesh();
+    }
 
     std::string stage;
     std::mutex stage_mutex;
@@ -103,10 +111,12 @@ LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conv
       }
       progress.report(done);
     };
-    converted = mesh_to_grid(mesh.prepared, options);
+    converted = convert ? convert(mesh.prepared, options) : mesh_to_grid(mesh.prepared, options);
     progress.finish();
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::usage) throw;
+    if (error.kind() == ErrorKind::usage ||
+        std::string_view(error.what()).starts_with(printable(input.path, 200)))
+      throw;
     throw Error(error.kind(), printable(input.path, 300) + ": " + error.what());
   }
 

@@ -5,6 +5,7 @@
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "options.hpp"
 
+#include <functional>
 #include <optional>
 
 namespace levelray {
@@ -45,9 +46,11 @@ bool is_vdb(const std::string& path);
 
 // Converts a mesh, telling about it: what it is, what the conversion will take, how it was signed. Warnings
 // are printed once the work has succeeded. `check_plan` may refuse the plan by an Error before any work.
+// `convert` may do the conversion, and the telling of its plan, in mesh_to_grid's place.
+using MeshConverter = std::function<ConvertedGrid(const PreparedMesh&, const ConvertOptions&)>;
 LoadedGrid convert_mesh(const InputOptions& input, const ConversionOptions& conversion,
                         const CommonOptions& common, Progress& progress,
-                        void (*check_plan)(const ConvertPlan&) = nullptr);
+                        void (*check_plan)(const ConvertPlan&) = nullptr, const MeshConverter& convert = {});
 
 // Reads a level set, or converts a mesh as above.
 LoadedGrid load_grid(const InputOptions& input, const ConversionOptions& conversion,

@@ -7,6 +7,7 @@
 #include "picture_frames.hpp"
 #include "render_frames.hpp"
 #include "render_scene.hpp"
+#include "tolerance.hpp"
 
 #include <fmt/format.h>
 #include <memory>
@@ -21,12 +22,13 @@ struct Render {
   ConversionOptions conversion;
   PictureOptions picture;
   RenderFramesOptions frames;
+  ToleranceOption tolerance;
   std::vector<std::string> overrides;
 
   void run(const CLI::App& command) const;
 
  private:
-  void run_one() const;
+  void run_one(const CLI::App& command) const;
 };
 
 // {median, min, max} of the repetitions, or their one value.
@@ -50,18 +52,22 @@ double median(std::vector<double> ms) {
 }
 
 void Render::run(const CLI::App& command) const {
+  if (is_scene(input.path) && tolerance.asked())
+    throw Error(ErrorKind::usage, "--tolerance is for one mesh or .vdb, and this input is a scene");
   if (is_scene(input.path)) return render_scene(command, overrides, common, input, picture, frames);
   if (!overrides.empty()) throw Error(ErrorKind::usage, "--set is for scenes, and this input is none");
   if (picture.outputs.empty()) throw Error(ErrorKind::usage, "--output is required; e.g. -o picture.png");
   picture.check();
   const FramePlan plan = frames.plan({input.path}, picture.outputs);
-  if (frames.many(plan))
-    render_frames(plan, common, input, conversion, picture, frames);
-  else
-    run_one();
+  if (!frames.many(plan)) return run_one(command);
+  if (tolerance.asked())
+    throw Error(ErrorKind::usage,
+                "--tolerance is for one picture; choose for one frame of the sequence, and give the "
+                "others what it takes: --voxel, --intersector, --normals");
+  render_frames(plan, common, input, conversion, picture, frames);
 }
 
-void Render::run_one() const {
+void Render::run_one(const CLI::App& command) const {
   std::vector<std::string> outputs;
   for (const std::string& output : picture.outputs)
     check_output(output, input.path, {".exr", ".png"}, outputs);
@@ -70,10 +76,17 @@ void Render::run_one() const {
   const ThreadLimit threads(common.threads);
   const Stopwatch total;
   Progress progress(common.quiet);
-  const LoadedGrid loaded = load_grid(input, conversion, common, progress);
+  std::optional<TolerableGrid> tolerable;
+  if (tolerance.asked())
+    tolerable = load_to_tolerance(tolerance, ToleranceLimits::of_render(command, picture), input, conversion,
+                                  common, progress);
+  const LoadedGrid loaded =
+      tolerable ? std::move(tolerable->loaded) : load_grid(input, conversion, common, progress);
   const double load_ms = total.ms();
 
   RenderOptions options = picture.resolve(loaded.grid);
+  if (tolerable)
+    options.intersector = tolerable->chosen.intersector, options.normals = tolerable->chosen.normals;
   check_render_memory(picture, options, loaded.grid.bytes(), input.memory_limit());
   const double rays = static_cast<double>(options.camera.width) * options.camera.height * options.samples;
   progress.begin("render", rays * options.repeat, " rays");
@@ -112,6 +125,7 @@ void Render::run_one() const {
   Json all_options = picture.json(options, thread_count());
   all_options.update(input.json());
   all_options.update(conversion.json());
+  if (tolerance.asked()) all_options["tolerance"] = tolerance.text;
   Json json = {{"grid", grid_json(loaded.grid)},
                {"options", all_options},
                {"rays", {{"primary", stats.primary_rays}, {"shadow", stats.shadow_rays}}},
@@ -125,6 +139,7 @@ void Render::run_one() const {
                  {"write", write_ms},
                  {"total", total.ms()}}},
                {"warnings", warnings}};
+  if (tolerable) json["tolerance"] = tolerable->json;
   add_field_facts(json, loaded);
   write_json(common, json);
 }
@@ -139,6 +154,7 @@ void add_render(CLI::App& program, Work& run) {
   levelray render statue.ply -o statue.exr -o statue.png --size 1920x1080 --shadows --ground
   levelray render statue.vdb -o statue.exr --aov t,P,N --eye 2,1,3 --target 0,0,0 --fov 35
   levelray render statue.vdb -o statue.png --light 1,2,1 --light -2,1,0,0.4 --samples 16
+  levelray render statue.ply -o statue.png --tolerance 0.25px
   levelray render 'cache/liquid.####.vdb' -f 1001-1100 -o 'out/liquid.####.exr' --skip-existing
   levelray render statue.vdb --turntable 120 -o 'turn/statue.####.png' --movie turn.mp4
   levelray render shot.json -f 1001-1100 -o 'out/shot.####.exr' --set film.samples=4
@@ -163,6 +179,7 @@ themselves, name these frames by --camera-frames. A frame that fails is reported
   options->picture.add_to(command);
   options->frames.add_to(command);
   options->conversion.add_to(command);
+  options->tolerance.add_to(command, true);
   options->input.add_to(command);
   options->common.add_to(command);
   command.callback([options, &run, &command] { run = [options, &command] { options->run(command); }; });

@@ -6,15 +6,17 @@
 
 namespace levelray {
 
+double error_quantile(const std::vector<double>& ascending, double q) {
+  const double rank = std::ceil(q * static_cast<double>(ascending.size()));
+  return ascending[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
 ErrorStatistics error_statistics(std::vector<double> values) {
   ErrorStatistics result;
   result.count = values.size();
   if (values.empty()) return result;
   std::sort(values.begin(), values.end());
-  const auto quantile = [&](double q) {
-    const double rank = std::ceil(q * static_cast<double>(values.size()));
-    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-  };
+  const auto quantile = [&](double q) { return error_quantile(values, q); };
   double sum = 0;
   for (const double value : values) sum += value;
   result.mean = sum / static_cast<double>(values.size());

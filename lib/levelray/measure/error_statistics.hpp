@@ -13,6 +13,7 @@ struct ErrorStatistics {
 
 // A quantile q is the smallest value that at least q of all values do not exceed.
 ErrorStatistics error_statistics(std::vector<double> values);
+double error_quantile(const std::vector<double>& ascending, double q); // of at least one value
 
 // The slope of log(error) over log(size) by least squares; NaN for fewer than two points, and where an error
 // is not positive.

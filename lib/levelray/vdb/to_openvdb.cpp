@@ -156,16 +156,27 @@ Tree::Ptr make_tree(const BlockGrid& grid) {
 
 } // namespace
 
+namespace {
+
+// OpenVDB 10 (math/Maps.h, ScaleMap) takes a map as singular when the product of its three scales is below
+// 3e-15.
+double smallest_volume() {
+  return 3 * openvdb::math::Tolerance<double>::value();
+}
+
+} // namespace
+
+double smallest_vdb_voxel_size() {
+  return std::cbrt(smallest_volume()) * (1 + 1e-12);
+}
+
 void check_vdb_voxel_size(double voxel_size) {
-  // OpenVDB 10 (math/Maps.h, ScaleMap) takes a map as singular when the product of its three scales is below
-  // 3e-15.
-  const double smallest_volume = 3 * openvdb::math::Tolerance<double>::value();
-  if (!(voxel_size * voxel_size * voxel_size >= smallest_volume))
+  if (!(voxel_size * voxel_size * voxel_size >= smallest_volume()))
     throw Error(
         ErrorKind::limit,
         fmt::format("OpenVDB cannot represent voxels of {:.6g}: the smallest are {:.4g}; scale the mesh up, "
                     "for example from metres to millimetres",
-                    voxel_size, std::cbrt(smallest_volume)));
+                    voxel_size, std::cbrt(smallest_volume())));
 }
 
 openvdb::FloatGrid::Ptr to_openvdb(const BlockGrid& grid) {

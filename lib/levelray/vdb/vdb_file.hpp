@@ -25,6 +25,7 @@ void write_vdb(const std::string& path, const BlockGrid& grid, const VdbWriteOpt
 // Throws Error(limit) for a voxel size, in world units, that OpenVDB cannot represent: what write_vdb would
 // say, to be asked before long work.
 void check_vdb_voxel_size(double voxel_size);
+double smallest_vdb_voxel_size(); // that it accepts, to rounding
 
 // When to make distances of a grid's values (convert/redistance.hpp): never, where they are none
 // (FieldFacts::is_distance), or always.
