@@ -5,6 +5,7 @@
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/measure/extremes.hpp"
 #include "levelray/measure/made_grids.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/measure/ray_trial.hpp"
 #include "levelray/trace/certified_hit.hpp"
 
@@ -13,7 +14,6 @@
 #include <cfenv>
 #include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 #include <thread>
 #ifdef __SSE2__
 #include <xmmintrin.h>
@@ -58,28 +58,11 @@ Bits samples(const BlockGrid& grid) {
   return bits;
 }
 
-// A closed mesh with curved and flat parts and a self-intersection.
+// Two tori through each other.
 PreparedMesh some_mesh() {
-  TriangleMesh mesh;
-  const std::uint32_t n = 24, m = 16;
-  for (int part = 0; part < 2; ++part)
-    for (std::uint32_t i = 0; i < n; ++i)
-      for (std::uint32_t j = 0; j < m; ++j) {
-        const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * j / m,
-                     r = 1 + 0.4 * std::cos(v);
-        const Vec3d p(r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v));
-        mesh.vertices.push_back(part ? Vec3d(p.x + 0.9, p.z, p.y) * 0.7 : p);
-        const std::uint32_t base = static_cast<std::uint32_t>(part) * n * m, a = base + i * m + j,
-                            b = base + (i + 1) % n * m + j, c = base + (i + 1) % n * m + (j + 1) % m,
-                            d = base + i * m + (j + 1) % m;
-        mesh.triangles.push_back({a, b, c});
-        mesh.triangles.push_back({a, c, d});
-        if (part) std::swap(mesh.triangles.back()[1], mesh.triangles.back()[2]);
-        if (part)
-          std::swap(mesh.triangles[mesh.triangles.size() - 2][1],
-                    mesh.triangles[mesh.triangles.size() - 2][2]);
-      }
-  return prepare_mesh(mesh);
+  TriangleMesh other = turned_faces(torus_mesh(24, 16), 1); // mirrored next
+  for (Vec3d& v : other.vertices) v = Vec3d(v.x + 0.9, v.z, v.y) * 0.7;
+  return prepare_mesh(joined_meshes(torus_mesh(24, 16), other));
 }
 
 Bits converted(const PreparedMesh& mesh) {
