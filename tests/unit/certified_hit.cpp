@@ -170,3 +170,17 @@ TEST_CASE("the original sphere lies in the bracket that the field's error gives"
   CHECK(outside == 0);
   CHECK(bounded > 500);
 }
+
+TEST_CASE("nothing is proven, and soon, of rays whose places rounding blurs by voxels") {
+  BlockGrid grid = unit_plate(1.75);
+  grid.field_error = 0.9;
+  const LevelSet level_set(grid);
+  for (const double away : {1e15, 1e30, 1e200}) {
+    const WorldRay ray = ray_of(Vec3d(-away, 0.25, 0.5), Vec3d(1, 0, 0));
+    const Hit hit = closest_hit(level_set, ray);
+    CHECK(bracket_original(level_set, ray, hit).t_lo <= ray.t_min);
+  }
+  // A field that may be off by more than any sample says nothing either.
+  const WorldRay ray = ray_of(Vec3d(-20, 0.25, 0.5), Vec3d(1, 0, 0));
+  CHECK(bracket_original(level_set, ray, closest_hit(level_set, ray), 100).t_lo <= ray.t_min);
+}

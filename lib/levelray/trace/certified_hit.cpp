@@ -151,9 +151,13 @@ Clearance clearance(const LevelSet& level_set, const WorldRay& ray, double extra
   // That is all, unless a sample is so near to 0 that a root may hide behind it. Ends of pieces are up to
   // three times as far off in the other loop.
   if (extra > 0 || static_cast<double>(surface.least_sample()) <= margin) {
+    const double near_margin = 3 * (margin - extra) + extra;
     const bool inside =
         side.known() ? side.inside() : RayValues(level_set.grid(), ray).at(ray.t_min).value < 0;
-    look_at_all_cells(level_set, ray, inside ? -1 : 1, place_error, 3 * (margin - extra) + extra, result.t);
+    if (near_margin < largest) // and so place_error below 1/18
+      look_at_all_cells(level_set, ray, inside ? -1 : 1, place_error, near_margin, result.t);
+    else // no sample exceeds it: a ray from that far away, or a field known that badly, proves nothing
+      result.t = std::min(result.t, ray.t_min);
   }
   return result;
 }
