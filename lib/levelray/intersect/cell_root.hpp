@@ -19,12 +19,20 @@ struct NoCount {
   void operator()(int) const {}
 };
 
+// What side * f must exceed at a place where other rays may begin: 2^-36 of the block's largest sample. They
+// compute their point anew, from world coordinates, with an error of some 2^-53 of the grid's size in voxels,
+// which moves f by as much of that sample: this serves grids of 2^14 voxels and more. Neither the cell's
+// corners nor the coefficients would do, which can all be tiny where f changes fast just beyond the cell.
+inline double safety_margin(const CellSegment& segment) {
+  return 0x1p-16 * static_cast<double>(segment.error); // which is 2^-20 of that sample
+}
+
 struct CellRoot {
   static constexpr double nowhere = -1;
 
   double at = 0; // fraction of the segment, [0,1]
   double outside =
-      nowhere; // a fraction <= at where side * f is safely positive, or `nowhere` in this segment
+      nowhere; // a fraction <= at where side * f exceeds safety_margin, or `nowhere` in this segment
 };
 
 } // namespace levelray

@@ -53,7 +53,7 @@ double Exact::last_of_bracket(const Bernstein<double>& f) {
 }
 
 // Newton's method from the false position, kept inside the bracket by bisection.
-void Exact::polish(const Bernstein<double>& f, double last, CellRoot& root) {
+void Exact::polish(const Bernstein<double>& f, double last, double margin, CellRoot& root) {
   root.at = 0;
   root.outside = CellRoot::nowhere;
   if (last == 0) return;
@@ -85,11 +85,6 @@ void Exact::polish(const Bernstein<double>& f, double last, CellRoot& root) {
   }
   root.at = s;
 
-  // A start for secondary rays. They compute their point anew, from world coordinates, with an error of some
-  // 2^-53 of the grid's size in voxels, so f must exceed that: 2^-36 of the largest coefficient serves grids
-  // of 2^14 voxels and more.
-  const double margin = 0x1p-36 * std::max({f.start, std::fabs(f.sum1), std::fabs(f.sum2),
-                                            std::fabs(f.end)}); // 3 of the largest b
   for (const double back : {0x1p-20, 0x1p-10, 1.0}) {
     const double before = std::max(0.0, s - back);
     if (cubic(before) > margin) {

@@ -42,15 +42,16 @@ struct Exact {
     const Bernstein<double> f = oriented(segment, side);
     const double last = last_of_bracket(f);
     if (!(last >= 0)) return false;
-    polish(f, last, root);
+    polish(f, last, safety_margin(segment), root);
     return true;
   }
 
   // The end of a bracket [0, end] that holds exactly one root of f, 0 where f(0) <= 0 already, or -1 where f
   // has no root in [0,1].
   static double last_of_bracket(const Bernstein<double>& f);
-  // The root in the bracket [0, last], f(0) > 0 >= f(last), or 0 where last is.
-  static void polish(const Bernstein<double>& f, double last, CellRoot& root);
+  // The root in the bracket [0, last], f(0) > 0 >= f(last), or 0 where last is; root.outside is where f
+  // exceeds `margin`.
+  static void polish(const Bernstein<double>& f, double last, double margin, CellRoot& root);
   // Where the cubic has its local minimum, if that is in (0,1); else -1.
   static double local_minimum(const Bernstein<double>& f);
   static double evaluate(const Bernstein<double>& f, double s);

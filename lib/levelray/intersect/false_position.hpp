@@ -42,11 +42,7 @@ struct FalsePosition {
     }
     if (f_high > 0) return false;
 
-    // A start for secondary rays must be positive by more than their rounding (see exact.cpp); the later
-    // steps come closer to the root than that.
-    float largest = 0;
-    for (const float corner : segment.corner) largest = std::max(largest, std::fabs(corner));
-    const double margin = 0x1p-36 * static_cast<double>(largest);
+    const double margin = safety_margin(segment); // the later steps come closer to the root than that
     if (f_low > margin) root.outside = 0;
 
     // f(low) > 0 >= f(high) throughout, so the denominator is positive.

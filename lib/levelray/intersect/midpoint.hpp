@@ -20,7 +20,8 @@ struct Midpoint {
   static bool find(const CellSegment& segment, double side, CellRoot& root, Count&& count = {}) {
     count(1);
     root.at = 0.5;
-    root.outside = side * interpolate(segment.corner, segment.in) > 0 ? 0 : CellRoot::nowhere;
+    root.outside =
+        side * interpolate(segment.corner, segment.in) > safety_margin(segment) ? 0 : CellRoot::nowhere;
     return true;
   }
 };

@@ -9,13 +9,6 @@
 
 namespace levelray {
 
-// What side * f must exceed at a place where other rays begin: 2^-36 of the largest corner (exact.cpp).
-inline double safety_margin(const CellSegment& segment) {
-  float largest = 0;
-  for (const float corner : segment.corner) largest = std::max(largest, std::fabs(corner));
-  return 0x1p-36 * static_cast<double>(largest);
-}
-
 // side * f at fraction s of the segment. Values at the ends are those of `interpolate`, bit for bit, so that
 // cells agree on a shared face. Between them, with M the largest |corner| and u = 2^-53: sums are off by 48 u
 // M (bernstein.hpp), c1, c2, c3 are at most 6, 12 and 8 M, and six operations on them round: below 2^-44 M.

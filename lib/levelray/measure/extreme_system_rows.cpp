@@ -2,6 +2,7 @@
 #include "levelray/convert/distance_kernel.hpp"
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/core/rounding_mode.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/measure/extremes.hpp"
 #include "levelray/measure/made_grids.hpp"
@@ -11,7 +12,6 @@
 
 #include <atomic>
 #include <bit>
-#include <cfenv>
 #include <cmath>
 #include <fmt/format.h>
 #include <thread>
@@ -212,24 +212,12 @@ ExtremeOutcome flushed_samples(const ExtremeSettings& settings) {
   return tally.outcome();
 }
 
-class RoundingMode {
- public:
-  explicit RoundingMode(int mode) : old_(std::fegetround()) { std::fesetround(mode); }
-  ~RoundingMode() { std::fesetround(old_); }
-  RoundingMode(const RoundingMode&) = delete;
-  RoundingMode& operator=(const RoundingMode&) = delete;
-
- private:
-  int old_;
-};
-
-// Hits, by twice the rounding; all but certificates, whose sums without rounding need round to nearest.
+// Hits, by twice the rounding, and what is proven of them.
 ExtremeOutcome rounding_modes(const ExtremeSettings& settings) {
   ExtremeTally tally("voxel");
   for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
     for (const NamedGrid& each : study_grids()) {
       RayTrial trial(each.grid, fmt::format("{}, rounding mode {:#x}", each.name, mode), settings, tally, 2);
-      trial.without_certificates();
       const RoundingMode rounding(mode);
       trial.judge_all_kinds(60);
     }

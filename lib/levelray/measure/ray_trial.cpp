@@ -186,7 +186,7 @@ void RayTrial::judge(const WorldRay& ray) {
   }
   if (settings_.intersector != Exact::name) return;
   judge_places(ray, hit, answer);
-  if (certificates_) judge_certificate(ray, hit, answer);
+  judge_certificate(ray, hit, answer);
 }
 
 void RayTrial::judge_places(const WorldRay& ray, const Hit& hit, const RayAnswer& answer) {

@@ -45,8 +45,6 @@ class RayTrial {
 
   // Leaves out t_outside, which is not promised where neighbouring blocks' samples differ wildly (hit.hpp).
   void without_safe_places() { safe_places_ = false; }
-  // Leaves out certify, which needs round to nearest (double_double.hpp).
-  void without_certificates() { certificates_ = false; }
 
   // A random ray from outside through the band.
   WorldRay random_ray();
@@ -72,7 +70,7 @@ class RayTrial {
   std::mt19937_64 random_;
   Box3d box_;
   std::vector<Vec3d> surface_;
-  bool safe_places_ = true, certificates_ = true;
+  bool safe_places_ = true;
 };
 
 } // namespace levelray

@@ -50,7 +50,7 @@ class SignWalk {
       const double last = Exact::last_of_bracket(oriented);
       if (last < 0) return;
       CellRoot root;
-      Exact::polish(oriented, last, root);
+      Exact::polish(oriented, last, safety_margin(cell.segment), root);
       come_to_zero(root.at);
       at = last;
     }

@@ -1,6 +1,7 @@
 #include "levelray/trace/certified_hit.hpp"
 
 #include "levelray/accel/cell_walk.hpp"
+#include "levelray/core/rounding_mode.hpp"
 #include "levelray/intersect/bernstein.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "levelray/trace/ray_values.hpp"
@@ -180,9 +181,8 @@ double distance_up(double a, double b) {
   return a == b ? 0 : std::nextafter(std::fabs(a - b), infinite);
 }
 
-} // namespace
-
-CertifiedHit certify(const LevelSet& level_set, const WorldRay& ray, const Hit& hit) {
+[[gnu::noinline]] CertifiedHit certify_to_nearest(const LevelSet& level_set, const WorldRay& ray,
+                                                  const Hit& hit) {
   CertifiedHit result;
   const Clearance clear = clearance(level_set, ray, 0);
   result.clear_to = clear.t;
@@ -243,8 +243,8 @@ CertifiedHit certify(const LevelSet& level_set, const WorldRay& ray, const Hit& 
   return result;
 }
 
-SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, const Hit& hit,
-                                double field_error) {
+[[gnu::noinline]] SurfaceBracket bracket_to_nearest(const LevelSet& level_set, const WorldRay& ray,
+                                                    const Hit& hit, double field_error) {
   SurfaceBracket result;
   result.t_lo = clearance(level_set, ray, field_error).t;
   if (hit) result.t_lo = std::min(result.t_lo, hit.t);
@@ -263,6 +263,19 @@ SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, 
     if (t == ray.t_max) break;
   }
   return result;
+}
+
+} // namespace
+
+CertifiedHit certify(const LevelSet& level_set, const WorldRay& ray, const Hit& hit) {
+  const RoundingMode mode(FE_TONEAREST);
+  return certify_to_nearest(level_set, ray, hit);
+}
+
+SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, const Hit& hit,
+                                double field_error) {
+  const RoundingMode mode(FE_TONEAREST);
+  return bracket_to_nearest(level_set, ray, hit, field_error);
 }
 
 SurfaceBracket bracket_original(const LevelSet& level_set, const WorldRay& ray, const Hit& hit) {

@@ -81,15 +81,6 @@ Hit within(const WorldRay& ray, Hit hit) {
   return hit;
 }
 
-// Whether other rays may begin at root.outside: f exceeds 2^-36 of the block's largest sample there. What an
-// intersector sees of a cell is the cubic along the segment, whose coefficients are all small where a ray
-// just cuts a corner by a zero sample, and say nothing of how fast f changes there.
-bool is_safe(const CellSegment& segment, double side, const CellRoot& root) {
-  return root.outside >= 0 &&
-         side * interpolate(segment.corner, point_at(segment, root.outside)) >
-             0x1p-16 * static_cast<double>(segment.error); // which is 2^-20 of that sample
-}
-
 // Where cells began in which nothing was found, the last of them. A ray that passes a zero sample by less
 // than rounding finds nothing there either, so f is looked at before another ray begins at such a place.
 class PassedCells {
@@ -144,9 +135,9 @@ template <class Intersector, class Walk>
     }
     hit.status = HitStatus::hit;
     hit.t = frame.t(cell.in + root.at * (cell.out - cell.in));
-    hit.t_outside = frame.t(is_safe(cell.segment, side.at_first(cell.segment), root)
-                                ? cell.in + root.outside * (cell.out - cell.in)
-                                : passed.outside(level_set, frame, side.at_first(cell.segment)));
+    hit.t_outside =
+        frame.t(root.outside >= 0 ? cell.in + root.outside * (cell.out - cell.in)
+                                  : passed.outside(level_set, frame, side.at_first(cell.segment)));
     hit.cell = grid_cell(level_set.surface(), frame, cell.position);
     return true;
   });

@@ -10,7 +10,7 @@
 // unknown intersector.
 //
 // Hosts may flush denormals, which changes no bit of hits but where samples are denormal themselves, and
-// round as they like: hits are right, by twice the rounding. What certify proves needs round to nearest.
+// round as they like: hits are right, by twice the rounding.
 #pragma once
 
 #include "levelray/accel/minmax_buffer.hpp"
