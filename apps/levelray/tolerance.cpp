@@ -91,6 +91,11 @@ class Asking {
     request.half = limits_.half, request.stored = limits_.stored;
     request.least_voxel = limits_.least_voxel;
     request.fixed_voxel = limits_.voxel || in_voxels();
+    if (limits_.picture) {
+      const RenderOptions picture = limits_.picture->resolve_without_grid();
+      request.picture_rays =
+          static_cast<double>(picture.samples) * picture.camera.width * picture.camera.height;
+    }
     if (tolerance_.pixels) {
       const PictureOptions& picture = *limits_.picture;
       const auto camera = [&picture](const LevelSet& level_set) {

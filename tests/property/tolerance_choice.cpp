@@ -63,6 +63,38 @@ TEST_CASE("a chosen configuration meets its tolerance by rays of other seeds, an
   }
 }
 
+TEST_CASE("voxels are made finer where the rays of a picture are worth it, and not for a few") {
+  const PreparedMesh prepared = prepare_mesh(made::box({0, 0, 0}, {1, 1, 1}));
+  ToleranceRequest request = length_request(0.01);
+  request.picture_rays = 1;
+  const ToleranceResult few = convert_to_tolerance(prepared, request);
+  request.picture_rays = 1e9;
+  const ToleranceResult many = convert_to_tolerance(prepared, request);
+  REQUIRE(few.end == ToleranceEnd::met);
+  REQUIRE(many.end == ToleranceEnd::met);
+  CHECK(many.voxel_size < few.voxel_size);
+  // By their counted steps, which is what finer voxels were taken for.
+  const auto steps = [&](const ToleranceResult& result) {
+    const LevelSet level_set(result.converted->grid);
+    const std::vector<WorldRay> rays = random_chords(prepared.report.bounds, 1 << 14, 3);
+    std::vector<Hit> hits(rays.size());
+    closest_hits(level_set, rays, PrimaryOptions(), hits);
+    double cost = 0;
+    for (const Hit& hit : hits) cost += ray_cost(hit.counts.steps, hit.counts.tests);
+    return cost * intersector_cost(result.intersector);
+  };
+  CHECK(steps(many) < 0.95 * steps(few));
+}
+
+TEST_CASE("normals that are chosen do not jump between cells, however large the tolerance") {
+  const PreparedMesh prepared = prepare_mesh(made::torus(1, 0.4, 64, 32));
+  for (const double tolerance : {0.1, 0.01}) {
+    const ToleranceResult result = convert_to_tolerance(prepared, length_request(tolerance));
+    REQUIRE(result.end == ToleranceEnd::met);
+    CHECK(result.normals != "analytic");
+  }
+}
+
 TEST_CASE("explicit methods, voxels and storage win, or are refused with what they can") {
   const PreparedMesh prepared = prepare_mesh(turned_box({1, 0.7, 0.4}));
   ToleranceRequest request = length_request(0.01);

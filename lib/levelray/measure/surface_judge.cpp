@@ -102,6 +102,12 @@ SurfaceErrors SurfaceJudge::errors(std::string_view intersector, double toleranc
   return result;
 }
 
+CountSums SurfaceJudge::counts() const {
+  CountSums sums;
+  for (const Hit& hit : exact_) sums += hit.counts;
+  return sums;
+}
+
 double SurfaceJudge::normals_median_degrees(std::string_view scheme) const {
   std::vector<std::size_t> some;
   for (std::size_t i = 0; i < exact_.size() && some.size() < 4096; ++i)

@@ -55,6 +55,9 @@ class SurfaceJudge {
   // it should enter loses the ray if it is so far from the exact one.
   SurfaceErrors errors(std::string_view intersector, double tolerance) const;
 
+  // Of all rays by `exact`, sums.
+  CountSums counts() const;
+
   // The median angle in degrees between a scheme's normals and the truth's at the exact hits, of 4096 of the
   // rays at most; 0 where nothing is hit.
   double normals_median_degrees(std::string_view scheme) const;

@@ -3,6 +3,7 @@
 #include "levelray/convert/thicken.hpp"
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/measure/method_costs.hpp"
 #include "levelray/measure/tolerance_chooser.hpp"
 
 #include <algorithm>
@@ -57,6 +58,8 @@ class VoxelSearch {
  private:
   static constexpr int most_trials = 16;
   static constexpr double close_enough = 7.0 / 8, near_voxels = 13.0 / 12;
+  static constexpr int finer_trials = 3;
+  static constexpr double pays = 0.9; // the costs are not known better
 
   ConvertOptions options_for(double voxel_size) const {
     ConvertOptions options = request_.convert;
@@ -164,7 +167,7 @@ class VoxelSearch {
     // Verify, with finer voxels where the other rays disagree.
     for (int round = 0; good && round < 6; ++round) {
       if (good->demonstrated <= good->world && chooser_.settle(*good, intersectors_for(request_), result))
-        return finish(*good, result);
+        return finish(*cheaper(std::move(good), result), result);
       if (good->voxel_size <= finest_) {
         end = ToleranceEnd::limited;
         break;
@@ -176,6 +179,41 @@ class VoxelSearch {
     if (good) best = std::move(good);
     if (!best) throw *empty_;
     chooser_.refuse(*best, end, result);
+  }
+
+  // Of the conversion and the picture, by measured costs.
+  double cost(const Candidate& candidate, const std::string& intersector) const {
+    const CountSums counts = candidate.judge->counts();
+    const auto rays = static_cast<double>(std::max<std::size_t>(candidate.choosing->rays.size(), 1));
+    return conversion_cost_of(candidate) +
+           request_.picture_rays * intersector_cost(intersector) *
+               ray_cost(static_cast<double>(counts.steps) / rays, static_cast<double>(counts.tests) / rays);
+  }
+  static double conversion_cost_of(const Candidate& candidate) {
+    return conversion_cost(static_cast<double>(candidate.converted.grid.active_sample_count()));
+  }
+
+  // Finer voxels than those of the settled candidate, where they pay.
+  std::unique_ptr<Candidate> cheaper(std::unique_ptr<Candidate> chosen, ToleranceResult& result) {
+    const double coarsest = chosen->voxel_size, conversion = conversion_cost_of(*chosen);
+    double least = cost(*chosen, result.intersector);
+    const double most_gain = 0.5 * (least - conversion);
+    for (int trial = 1; trial <= finer_trials; ++trial) {
+      const double voxel = coarsest * std::exp2(-trial / 6.0);
+      const double more = conversion * (std::exp2(trial / 3.0) - 1);
+      if (voxel < finest_ || more >= most_gain) break;
+      std::unique_ptr<Candidate> candidate = at(voxel);
+      ToleranceResult settled;
+      if (!candidate || !(candidate->demonstrated <= candidate->world) ||
+          !chooser_.settle(*candidate, intersectors_for(request_), settled))
+        continue;
+      const double costs = cost(*candidate, settled.intersector);
+      if (costs > pays * least) continue;
+      least = costs;
+      chosen = std::move(candidate);
+      result = std::move(settled);
+    }
+    return chosen;
   }
 
   void finish(Candidate& candidate, ToleranceResult& result) {

@@ -10,16 +10,16 @@
 // How it is chosen. Measured costs say that the voxel size decides: a conversion takes work in proportion to
 // 1 / voxel^2, while the intersectors that find every surface differ by a sixth. So the largest voxel that
 // meets the tolerance with `exact` is sought, and then, in the order of their measured costs
-// (measure/method_costs.hpp), the cheapest intersector that still does. `midpoint`, which saves a quarter of
-// a ray's time for errors of half a voxel, could win with slightly finer voxels where conversions are short
-// against a picture and creases are off by as much anyway; voxels are not made finer for it, which cost a
-// factor of 1.3 on two of the meshes measured and 1.6 on a cube, all below 0.12 s of work. Errors are
-// modelled as a power of the voxel size whose order is that between the last two trials: first order where
-// creases rule, second where the mesh is smooth against the voxels. The search ends when the error is within
-// an eighth of the tolerance, or voxels a twelfth larger have failed. Normals do not move the surface; a
-// surface within a tolerance T of another may be tilted by atan(T / voxel) over a voxel, and the cheapest
-// scheme is taken whose median angle to the mesh's is no larger. 16-bit storage is taken when values rounded
-// to it still meet the tolerance by both sets of rays.
+// (measure/method_costs.hpp), the cheapest intersector that still does. Where conversions are short against a
+// picture, voxels up to 1.4 times finer are tried as well, and taken where the conversion and a picture's
+// rays cost a tenth less by their counted steps: `midpoint`, which saves a quarter of a ray's time for errors
+// of half a voxel, may then do, and where flat faces lie against the blocks makes a factor of up to 2. Errors
+// are modelled as a power of the voxel size whose order is that between the last two trials: first order
+// where creases rule, second where the mesh is smooth against the voxels. The search ends when the error is
+// within an eighth of the tolerance, or voxels a twelfth larger have failed. Normals do not move the surface;
+// a surface within a tolerance T of another may be tilted by atan(T / voxel) over a voxel, and the cheapest
+// smooth scheme is taken whose median angle to the mesh's is no larger. 16-bit storage is taken when values
+// rounded to it still meet the tolerance by both sets of rays.
 //
 // Nothing depends on times measured at run time: the same input gives the same choice everywhere.
 #pragma once
@@ -42,7 +42,8 @@ struct ToleranceRequest {
   std::function<double(const LevelSet&)> world;
   // The first `count` verification rays of a seed, unit directions; empty: random_chords of the mesh.
   std::function<std::vector<WorldRay>(const LevelSet&, std::uint64_t seed, std::size_t count)> rays;
-  double guess = 0; // about the tolerance, world units; 0: not known
+  double picture_rays = 512 * 512; // that will be traced, to weigh their cost against the conversion's
+  double guess = 0;                // about the tolerance, world units; 0: not known
   // Of convert, voxel_size and resolution count only with fixed_voxel. Memory is limited by max_memory.
   ConvertOptions convert;
   bool fixed_voxel = false;
@@ -95,7 +96,7 @@ struct ToleranceResult {
 ToleranceResult convert_to_tolerance(const PreparedMesh& mesh, const ToleranceRequest& request);
 
 // Of a grid that is there: the truth is the interpolant of its samples, and only intersector, normals
-// (analytic ones are exact) and storage are chosen. `converted` stays empty.
+// and storage are chosen. `converted` stays empty.
 ToleranceResult trace_to_tolerance(const BlockGrid& grid, const ToleranceRequest& request);
 
 } // namespace levelray

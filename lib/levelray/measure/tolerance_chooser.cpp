@@ -6,6 +6,7 @@
 #include "levelray/measure/half_storage.hpp"
 #include "levelray/measure/method_costs.hpp"
 #include "levelray/measure/ray_sets.hpp"
+#include "levelray/normal/normals.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,6 +39,16 @@ RaySet draw_rays(const SurfaceTruth& truth, const ToleranceRequest& request, con
     }
     if (count >= 1 << 20 || set.rays.size() < count) return set;
   }
+}
+
+std::vector<std::string> smooth_normals_by_cost() {
+  std::vector<std::string> names = normals_by_cost();
+  std::erase_if(names, [](const std::string& name) {
+    bool smooth = false;
+    visit_method<NormalSchemes>(name, [&]<class Scheme>(Scheme) { smooth = Scheme::smooth; });
+    return !smooth;
+  });
+  return names;
 }
 
 AchievedError achieved_by(const SurfaceErrors& errors) {
@@ -127,7 +138,7 @@ void ToleranceChooser::choose_normals(const Candidate& candidate, ToleranceResul
   const double allowed = std::atan(result.world / result.voxel_size) * 180 / 3.14159265358979323846;
   double least = std::numeric_limits<double>::infinity();
   for (const std::string& name :
-       request_.normals.empty() ? normals_by_cost() : std::vector<std::string>{request_.normals}) {
+       request_.normals.empty() ? smooth_normals_by_cost() : std::vector<std::string>{request_.normals}) {
     const double angle = candidate.judge->normals_median_degrees(name);
     if (angle < least) result.normals = name, result.normals_median_degrees = least = angle;
     if (angle <= allowed) break;

@@ -48,7 +48,7 @@ class ToleranceChooser {
   bool settle_half(const BlockGrid& grid, ToleranceResult& result, std::unique_ptr<Candidate>& rounded);
   // Makes the candidate's level set of a grid's values as 16-bit floats; false where they do not fit.
   static bool round_into(const BlockGrid& grid, Candidate& candidate);
-  // Takes the cheapest normals whose median angle is what the tolerance allows, else the best.
+  // Takes the cheapest smooth normals whose median angle is what the tolerance allows, else the best of them.
   void choose_normals(const Candidate& candidate, ToleranceResult& result) const;
   // What a candidate that failed achieves, and the tolerance that it would meet.
   void refuse(Candidate& candidate, ToleranceEnd end, ToleranceResult& result);

@@ -11,6 +11,7 @@ namespace levelray {
 
 struct AnalyticNormal {
   static constexpr std::string_view name = "analytic";
+  static constexpr bool smooth = false;
   static constexpr std::string_view source = "Jamriska 2010, section 5";
   static constexpr int samples = 8, interpolations = 0;
   static constexpr bool whole = false;

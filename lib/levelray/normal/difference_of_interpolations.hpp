@@ -16,6 +16,7 @@ namespace levelray {
 
 struct DifferenceOfInterpolations {
   static constexpr std::string_view name = "difference-of-interpolations";
+  static constexpr bool smooth = true;
   static constexpr std::string_view source = "Jamriska 2010, section 5";
   static constexpr int samples = 20, interpolations = 4;
   static constexpr bool whole = false;

@@ -18,6 +18,7 @@ namespace levelray {
 
 struct DualVoxel {
   static constexpr std::string_view name = "dual-voxel";
+  static constexpr bool smooth = true;
   static constexpr std::string_view source =
       "Hansson-Soderlund, Evans and Akenine-Moller 2022, JCGT 11(3), section 3.2";
   static constexpr int samples = 27, interpolations = 0;

@@ -11,6 +11,7 @@ namespace levelray {
 
 struct InterpolationOfDifferences {
   static constexpr std::string_view name = "interpolation-of-differences";
+  static constexpr bool smooth = true;
   static constexpr std::string_view source = "Jamriska 2010, section 5";
   static constexpr int samples = 32, interpolations = 1;
   static constexpr bool whole = false;

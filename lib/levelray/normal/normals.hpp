@@ -1,4 +1,7 @@
 // The one list of normal schemes; command line, documentation, instantiations and tests come from it.
+//
+// A scheme is `smooth` if its normals do not jump between cells where the surface has no crease: shading by
+// others shows the cells.
 #pragma once
 
 #include "levelray/core/methods.hpp"

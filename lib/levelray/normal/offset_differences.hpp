@@ -23,6 +23,7 @@ namespace levelray {
 
 struct OffsetDifferences {
   static constexpr std::string_view name = "offset-differences";
+  static constexpr bool smooth = true;
   static constexpr std::string_view source = "after Jamriska 2010, section 5: six points, half a voxel away";
   static constexpr int samples = 32, interpolations = 6;
   static constexpr bool whole = false;

@@ -38,6 +38,7 @@ namespace levelray {
 
 struct SharpFeatures {
   static constexpr std::string_view name = "sharp-features";
+  static constexpr bool smooth = true;
   static constexpr std::string_view source =
       "ours: offset differences, at creases the plane of one side; after Ju et al. 2002, section 2.1";
   static constexpr int samples = 64, interpolations = 6;

@@ -22,6 +22,7 @@ namespace levelray {
 
 struct TricubicBSpline {
   static constexpr std::string_view name = "tricubic-b-spline";
+  static constexpr bool smooth = true;
   static constexpr std::string_view source =
       "cubic B-spline of the samples; Unser 1999, Sigg and Hadwiger 2005";
   static constexpr int samples = 64, interpolations = 1;
