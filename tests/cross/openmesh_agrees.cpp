@@ -1,8 +1,8 @@
 // OpenMesh as a second opinion on manifold meshes, which are all that its half-edges can hold.
 #include "levelray/io/mesh_reader.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/mesh/prepare.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
@@ -14,7 +14,6 @@
 #include <filesystem>
 
 using namespace levelray;
-using namespace levelray::made;
 
 namespace {
 
@@ -86,12 +85,12 @@ void compare(const std::string& name, const PreparedMesh& mesh) {
 } // namespace
 
 TEST_CASE("OpenMesh finds the same boundaries, components and Euler characteristic on made meshes") {
-  compare("tetrahedron", prepare_mesh(tetrahedron()));
-  compare("torus", prepare_mesh(torus(2, 1, 20, 11)));
-  compare("open box", prepare_mesh(without(box(), 0, 2)));
-  compare("tube", prepare_mesh(without(box(), 0, 4)));
-  compare("two", prepare_mesh(joined(box(), torus(9, 1, 20, 11))));
-  TriangleMesh flipped = torus(2, 1, 20, 11);
+  compare("tetrahedron", prepare_mesh(tetrahedron_mesh()));
+  compare("torus", prepare_mesh(torus_mesh(20, 11, 2, 1)));
+  compare("open box", prepare_mesh(without_triangles(box_mesh(), 0, 2)));
+  compare("tube", prepare_mesh(without_triangles(box_mesh(), 0, 4)));
+  compare("two", prepare_mesh(joined_meshes(box_mesh(), torus_mesh(20, 11, 9, 1))));
+  TriangleMesh flipped = torus_mesh(20, 11, 2, 1);
   for (std::size_t t = 0; t < flipped.triangles.size(); t += 3)
     std::swap(flipped.triangles[t][0], flipped.triangles[t][1]);
   CHECK(by_openmesh(flipped).refused > 0); // clashing faces do not fit into half-edges

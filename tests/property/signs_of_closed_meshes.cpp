@@ -1,15 +1,14 @@
 // What must hold on any closed mesh: solid angles sum to whole numbers, and pseudonormals tell the same side.
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/mesh/prepare.hpp"
 #include "levelray/mesh/pseudonormal.hpp"
 #include "levelray/mesh/triangle_bvh.hpp"
 #include "levelray/mesh/winding_number.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 #include <random>
 
 using namespace levelray;
-using namespace levelray::made;
 
 namespace {
 
@@ -26,13 +25,13 @@ TriangleMesh wedge_with_t_junction() {
 }
 
 std::vector<std::pair<std::string, TriangleMesh>> closed_meshes() {
-  return {{"tetrahedron", tetrahedron()},
-          {"box", box()},
-          {"torus", torus(2, 0.7, 30, 17)},
-          {"thin torus", torus(2, 0.01, 60, 5)},
-          {"hollow", joined(box(Vec3d(-2), Vec3d(3)), inverted(box()))},
+  return {{"tetrahedron", tetrahedron_mesh()},
+          {"box", box_mesh()},
+          {"torus", torus_mesh(30, 17, 2, 0.7)},
+          {"thin torus", torus_mesh(60, 5, 2, 0.01)},
+          {"hollow", joined_meshes(box_mesh(Vec3d(-2), Vec3d(3)), inverted_mesh(box_mesh()))},
           {"wedge", wedge_with_t_junction()},
-          {"far", moved(torus(2, 0.7, 30, 17), Vec3d(1e7, -1e7, 1e7))}};
+          {"far", moved_mesh(torus_mesh(30, 17, 2, 0.7), Vec3d(1e7, -1e7, 1e7))}};
 }
 
 } // namespace
@@ -86,7 +85,7 @@ TEST_CASE("pseudonormals tell the same side as the winding number on closed mesh
 }
 
 TEST_CASE("a pseudonormal at an edge and at a vertex is the angle-weighted mean of its faces' normals") {
-  const PreparedMesh prepared = prepare_mesh(box());
+  const PreparedMesh prepared = prepare_mesh(box_mesh());
   const Pseudonormals normals(prepared.mesh);
   for (std::uint32_t t = 0; t < prepared.mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {

@@ -1,11 +1,11 @@
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/measure/method_costs.hpp"
 #include "levelray/measure/ray_sets.hpp"
 #include "levelray/measure/surface_judge.hpp"
 #include "levelray/measure/tolerance.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ ToleranceRequest length_request(double world) {
 
 // Turned and off the lattice, so that no edge lies on a plane of samples.
 TriangleMesh turned_box(const Vec3d& size) {
-  TriangleMesh mesh = made::box(size * -0.5, size * 0.5);
+  TriangleMesh mesh = box_mesh(size * -0.5, size * 0.5);
   const Vec3d x = Vec3d(0.7, 0.3, 0.2).normalized(), z = x.cross(Vec3d(0.1, 0.9, 0.3)).normalized();
   const Vec3d y = z.cross(x);
   for (Vec3d& v : mesh.vertices) v = x * v.x + y * v.y + z * v.z + Vec3d(0.013, -0.021, 0.037);
@@ -38,8 +38,8 @@ TEST_CASE("a chosen configuration meets its tolerance by rays of other seeds, an
     double tolerance;
   };
   const Case cases[] = {{"turned box", turned_box({1, 0.7, 0.4}), 0.004},
-                        {"torus", made::torus(1, 0.4, 96, 48), 0.01},
-                        {"tetrahedron", made::tetrahedron(), 0.01}};
+                        {"torus", torus_mesh(96, 48, 1, 0.4), 0.01},
+                        {"tetrahedron", tetrahedron_mesh(), 0.01}};
   for (const Case& c : cases) {
     INFO(c.name);
     const PreparedMesh prepared = prepare_mesh(c.mesh);
@@ -64,7 +64,7 @@ TEST_CASE("a chosen configuration meets its tolerance by rays of other seeds, an
 }
 
 TEST_CASE("voxels are made finer where the rays of a picture are worth it, and not for a few") {
-  const PreparedMesh prepared = prepare_mesh(made::box({0, 0, 0}, {1, 1, 1}));
+  const PreparedMesh prepared = prepare_mesh(box_mesh({0, 0, 0}, {1, 1, 1}));
   ToleranceRequest request = length_request(0.01);
   request.picture_rays = 1;
   const ToleranceResult few = convert_to_tolerance(prepared, request);
@@ -87,7 +87,7 @@ TEST_CASE("voxels are made finer where the rays of a picture are worth it, and n
 }
 
 TEST_CASE("normals that are chosen do not jump between cells, however large the tolerance") {
-  const PreparedMesh prepared = prepare_mesh(made::torus(1, 0.4, 64, 32));
+  const PreparedMesh prepared = prepare_mesh(torus_mesh(64, 32, 1, 0.4));
   for (const double tolerance : {0.1, 0.01}) {
     const ToleranceResult result = convert_to_tolerance(prepared, length_request(tolerance));
     REQUIRE(result.end == ToleranceEnd::met);
@@ -146,7 +146,7 @@ TEST_CASE("a tolerance beyond the memory limit is refused with the closest that 
 
 TEST_CASE("a mesh of which parts enclose nothing is refused, however fine the voxels") {
   // A box and a lone square beside it, which no sign gives an inside.
-  TriangleMesh mesh = made::box(Vec3d(0.003), Vec3d(1.003));
+  TriangleMesh mesh = box_mesh(Vec3d(0.003), Vec3d(1.003));
   const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Vec3d& v : {Vec3d(1.5, 0, 0.1), Vec3d(2.5, 0, 0.1), Vec3d(2.5, 1, 0.2), Vec3d(1.5, 1, 0.2)})
     mesh.vertices.push_back(v);
@@ -158,7 +158,7 @@ TEST_CASE("a mesh of which parts enclose nothing is refused, however fine the vo
 }
 
 TEST_CASE("the choice is the same for any number of threads") {
-  const PreparedMesh prepared = prepare_mesh(made::torus(1, 0.4, 32, 16));
+  const PreparedMesh prepared = prepare_mesh(torus_mesh(32, 16, 1, 0.4));
   ToleranceRequest request = length_request(0.02);
   request.stored = true;
   const ToleranceResult all = convert_to_tolerance(prepared, request);
@@ -175,7 +175,7 @@ TEST_CASE("the choice is the same for any number of threads") {
 }
 
 TEST_CASE("of a grid the cheapest intersector within the tolerance is taken, and exact meets any") {
-  const PreparedMesh prepared = prepare_mesh(made::torus(1, 0.4, 64, 32));
+  const PreparedMesh prepared = prepare_mesh(torus_mesh(64, 32, 1, 0.4));
   ConvertOptions options;
   options.voxel_size = 0.05;
   const BlockGrid grid = mesh_to_grid(prepared, options).grid;

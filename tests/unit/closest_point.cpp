@@ -1,13 +1,12 @@
 #include "levelray/mesh/closest_point.hpp"
 
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/mesh/triangle_bvh.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 #include <random>
 
 using namespace levelray;
-using namespace levelray::made;
 
 namespace {
 
@@ -74,7 +73,7 @@ TEST_CASE("the nearest point agrees with a net of points on random triangles, sl
 }
 
 TEST_CASE("the tree finds what looking at every triangle finds") {
-  const TriangleMesh mesh = moved(torus(2, 0.5, 40, 20), Vec3d(1, 2, 3));
+  const TriangleMesh mesh = moved_mesh(torus_mesh(40, 20, 2, 0.5), Vec3d(1, 2, 3));
   const TriangleBvh bvh(mesh);
   std::mt19937_64 random(21);
   std::uniform_real_distribution<double> uniform(-3, 3);
@@ -96,7 +95,7 @@ TEST_CASE("the tree finds what looking at every triangle finds") {
 }
 
 TEST_CASE("rays through a closed mesh enter as often as they leave, also through its edges and vertices") {
-  const TriangleMesh mesh = torus(2, 0.5, 40, 20);
+  const TriangleMesh mesh = torus_mesh(40, 20, 2, 0.5);
   const TriangleBvh bvh(mesh);
   std::mt19937_64 random(22);
   std::uniform_real_distribution<double> uniform(-3, 3);
@@ -130,7 +129,7 @@ TEST_CASE("rays through a closed mesh enter as often as they leave, also through
 }
 
 TEST_CASE("a ray meets a box where it should") {
-  const TriangleMesh mesh = box();
+  const TriangleMesh mesh = box_mesh();
   const TriangleBvh bvh(mesh);
   WorldRay ray;
   ray.origin = Vec3d(0.3, 0.4, -2);

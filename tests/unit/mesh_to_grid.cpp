@@ -2,9 +2,9 @@
 
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "support/catch.hpp"
 #include "support/conversion.hpp"
-#include "support/made_meshes.hpp"
 
 #include <cstring>
 #include <random>
@@ -49,7 +49,7 @@ ErrorKind kind_of_error(const TriangleMesh& mesh, const ConvertOptions& options,
 
 TEST_CASE("a box becomes its signed distance, band and flags") {
   const Vec3d min(-1.3, -0.45, 0.21), max(0.9, 0.7, 1.02);
-  const ConvertedGrid result = convert(made::box(min, max), 0.031);
+  const ConvertedGrid result = convert(box_mesh(min, max), 0.031);
   const BlockGrid& grid = result.grid;
   std::uint64_t wrong = 0, expected_active = 0;
   for (int k = -20; k < 60; ++k)
@@ -70,7 +70,7 @@ TEST_CASE("a box whose faces lie on samples, or half way between them, keeps its
   for (const double shift : {0.0, 0.5, 0.25}) {
     CAPTURE(shift);
     const Vec3d min = Vec3d(-8, -4, 3) + Vec3d(shift), max = Vec3d(9, 12, 20) + Vec3d(shift);
-    const BlockGrid grid = convert(made::box(min, max), 1).grid;
+    const BlockGrid grid = convert(box_mesh(min, max), 1).grid;
     std::uint64_t wrong = 0;
     for_each_sample(grid, [&](int i, int j, int k, float value, bool) {
       const double d = box_distance(Vec3d(i, j, k), min, max);
@@ -84,7 +84,7 @@ TEST_CASE("a box whose faces lie on samples, or half way between them, keeps its
 
 TEST_CASE("nested shells stay hollow, and only `flood` fills them") {
   const TriangleMesh mesh =
-      made::joined(made::box(Vec3d(-1), Vec3d(1)), made::inverted(made::box(Vec3d(-0.6), Vec3d(0.6))));
+      joined_meshes(box_mesh(Vec3d(-1), Vec3d(1)), inverted_mesh(box_mesh(Vec3d(-0.6), Vec3d(0.6))));
   CHECK(nearest_value(convert(mesh, 0.05).grid, Vec3d(0)) > 0);
   CHECK(nearest_value(convert(mesh, 0.05).grid, Vec3d(0.8, 0, 0)) < 0);
   CHECK(nearest_value(convert(mesh, 0.05, SignMethod::winding_abs).grid, Vec3d(0)) > 0);
@@ -94,9 +94,9 @@ TEST_CASE("nested shells stay hollow, and only `flood` fills them") {
 
 TEST_CASE("an inverted mesh is turned, an inverted hollow one as a whole") {
   const TriangleMesh hollow =
-      made::joined(made::box(Vec3d(-1), Vec3d(1)), made::inverted(made::box(Vec3d(-0.6), Vec3d(0.6))));
-  CHECK(nearest_value(convert(made::inverted(made::box()), 0.05).grid, Vec3d(0.5)) < 0);
-  const BlockGrid grid = convert(made::inverted(hollow), 0.05).grid;
+      joined_meshes(box_mesh(Vec3d(-1), Vec3d(1)), inverted_mesh(box_mesh(Vec3d(-0.6), Vec3d(0.6))));
+  CHECK(nearest_value(convert(inverted_mesh(box_mesh()), 0.05).grid, Vec3d(0.5)) < 0);
+  const BlockGrid grid = convert(inverted_mesh(hollow), 0.05).grid;
   CHECK(nearest_value(grid, Vec3d(0)) > 0);
   CHECK(nearest_value(grid, Vec3d(0.8, 0, 0)) < 0);
 }
@@ -104,8 +104,8 @@ TEST_CASE("an inverted mesh is turned, an inverted hollow one as a whole") {
 TEST_CASE("a gap of 0.2 voxels between two boxes stays a gap, and a wall of 0.2 voxels a wall") {
   const double h = 0.1;
   for (const double at : {0.03, 0.04, 0.1}) { // where the gap begins, of a sample at 0.05 .. 0.15
-    const TriangleMesh boxes = made::joined(made::box(Vec3d(-1, -1, -1), Vec3d(at, 1, 1)),
-                                            made::box(Vec3d(at + 0.2 * h, -1, -1), Vec3d(1, 1, 1)));
+    const TriangleMesh boxes = joined_meshes(box_mesh(Vec3d(-1, -1, -1), Vec3d(at, 1, 1)),
+                                             box_mesh(Vec3d(at + 0.2 * h, -1, -1), Vec3d(1, 1, 1)));
     const BlockGrid grid = convert(boxes, h).grid;
     std::uint64_t wrong = 0;
     for_each_sample(grid, [&](int i, int j, int k, float value, bool) {
@@ -117,23 +117,23 @@ TEST_CASE("a gap of 0.2 voxels between two boxes stays a gap, and a wall of 0.2 
     CHECK(wrong == 0);
   }
   const BlockGrid wall =
-      convert(made::box(Vec3d(-0.01, -1, -1), Vec3d(0.01, 1, 1)), h).grid; // around the samples x = 0
+      convert(box_mesh(Vec3d(-0.01, -1, -1), Vec3d(0.01, 1, 1)), h).grid; // around the samples x = 0
   CHECK(wall.value(0, 0, 0) < 0);
   CHECK(wall.value(1, 0, 0) > 0);
   CHECK(wall.value(-1, 0, 0) > 0);
 }
 
 TEST_CASE("parts thinner than a voxel are pointed out") {
-  const TriangleMesh wall = made::joined(made::box(Vec3d(0.03, -1, -1), Vec3d(0.05, 1, 1)),
-                                         made::box(Vec3d(0.5, -1, -1), Vec3d(1.5, 1, 1)));
+  const TriangleMesh wall = joined_meshes(box_mesh(Vec3d(0.03, -1, -1), Vec3d(0.05, 1, 1)),
+                                          box_mesh(Vec3d(0.5, -1, -1), Vec3d(1.5, 1, 1)));
   const ConvertedGrid result = convert(wall, 0.1);
   REQUIRE(result.report.warnings.size() == 1);
   CHECK_THAT(result.report.warnings[0], Contains("thinner"));
-  CHECK(convert(made::box(), 0.1).report.warnings.empty());
+  CHECK(convert(box_mesh(), 0.1).report.warnings.empty());
 }
 
 TEST_CASE("a box without a lid is closed by its winding number") {
-  const TriangleMesh open = made::without(made::box(Vec3d(-1), Vec3d(1)), 10, 2);
+  const TriangleMesh open = without_triangles(box_mesh(Vec3d(-1), Vec3d(1)), 10, 2);
   const ConvertedGrid result = convert(open, 0.07);
   CHECK(nearest_value(result.grid, Vec3d(0, 0, 0)) < 0);
   CHECK(nearest_value(result.grid, Vec3d(0, 0, 1.3)) > 0);
@@ -148,7 +148,7 @@ TEST_CASE("a box without a lid is closed by its winding number") {
 }
 
 TEST_CASE("a surface that is cracked along every edge is signed as the closed one") {
-  const TriangleMesh torus = made::torus(1, 0.33, 60, 30);
+  const TriangleMesh torus = torus_mesh(60, 30, 1, 0.33);
   TriangleMesh cracked;
   std::mt19937_64 rng(4);
   std::uniform_real_distribution<double> jitter(-1e-6, 1e-6);
@@ -191,22 +191,22 @@ TEST_CASE("sizes that make no sense are usage errors, sizes that do not fit are 
   for (const double voxel : {-1.0, 1e300, std::nan(""), 2.0}) {
     CAPTURE(voxel);
     options.voxel_size = voxel;
-    CHECK(kind_of_error(made::box(), options) == ErrorKind::usage);
+    CHECK(kind_of_error(box_mesh(), options) == ErrorKind::usage);
   }
   options.voxel_size = 1e-7;
-  CHECK(kind_of_error(made::box(), options) == ErrorKind::limit);
+  CHECK(kind_of_error(box_mesh(), options) == ErrorKind::limit);
   options.voxel_size = 0.01;
   options.max_memory = 1 << 20;
   std::string text;
-  CHECK(kind_of_error(made::box(), options, &text) == ErrorKind::limit);
+  CHECK(kind_of_error(box_mesh(), options, &text) == ErrorKind::limit);
   CHECK_THAT(text, Contains("--max-memory"));
   options = {};
   options.half_width_voxels = 0.5;
-  CHECK(kind_of_error(made::box(), options) == ErrorKind::usage);
+  CHECK(kind_of_error(box_mesh(), options) == ErrorKind::usage);
 }
 
 TEST_CASE("the plan counts the samples of bands that are wide against the mesh") {
-  const PreparedMesh box = prepare_mesh(made::box());
+  const PreparedMesh box = prepare_mesh(box_mesh());
   for (const double half_width : {3.0, 10.0, 40.0}) {
     ConvertOptions options;
     options.resolution = 12;
@@ -224,11 +224,11 @@ TEST_CASE("the plan counts the samples of bands that are wide against the mesh")
   options.resolution = 64;
   options.half_width_voxels = 1000;
   options.max_memory = std::uint64_t{16} << 30;
-  CHECK(kind_of_error(made::box(), options) == ErrorKind::limit);
+  CHECK(kind_of_error(box_mesh(), options) == ErrorKind::limit);
 }
 
 TEST_CASE("any half-width gives exact distances and a whole band") {
-  const TriangleMesh torus = made::torus(1, 0.33, 40, 24);
+  const TriangleMesh torus = torus_mesh(40, 24, 1, 0.33);
   for (const double half_width : {1.0, 1.5, 2.0, 4.7}) {
     CAPTURE(half_width);
     const BlockGrid grid = convert(torus, 0.05, SignMethod::automatic, half_width).grid;
@@ -246,7 +246,7 @@ TEST_CASE("any half-width gives exact distances and a whole band") {
 
 TEST_CASE("a mesh far from the origin converts as exactly as one at the origin") {
   const Vec3d far(1.2e7, -3.4e6, 5e5);
-  const TriangleMesh torus = made::torus(1, 0.33, 40, 24), moved = made::moved(torus, far);
+  const TriangleMesh torus = torus_mesh(40, 24, 1, 0.33), moved = moved_mesh(torus, far);
   const BlockGrid grid = convert(moved, 1e-2 * 5).grid;
   const PreparedMesh prepared = prepare_mesh(moved);
   const TriangleBvh bvh(prepared.mesh);
@@ -258,7 +258,7 @@ TEST_CASE("a mesh far from the origin converts as exactly as one at the origin")
 }
 
 TEST_CASE("slivers, needles and triangles without area count for distances as what they are") {
-  TriangleMesh mesh = made::box(Vec3d(-1), Vec3d(1));
+  TriangleMesh mesh = box_mesh(Vec3d(-1), Vec3d(1));
   // A needle beside the box, doubled so that it encloses nothing, a collinear triangle and one of two equal
   // corners' width.
   const auto add = [&](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -284,7 +284,7 @@ TEST_CASE("slivers, needles and triangles without area count for distances as wh
 }
 
 TEST_CASE("the same bytes come out for 1, 2 and 7 threads") {
-  const TriangleMesh torus = made::without(made::torus(1, 0.33, 60, 30), 100, 7);
+  const TriangleMesh torus = without_triangles(torus_mesh(60, 30, 1, 0.33), 100, 7);
   std::vector<BlockGrid> grids;
   for (const int threads : {1, 2, 7}) {
     const ThreadLimit limit(threads);

@@ -2,12 +2,11 @@
 
 #include "levelray/core/error.hpp"
 #include "levelray/core/parallel.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/mesh/winding_number.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 using namespace levelray;
-using namespace levelray::made;
 
 namespace {
 
@@ -27,9 +26,9 @@ const Vec3d middle(0.5, 0.5, 0.5);
 } // namespace
 
 TEST_CASE("a clean tetrahedron stays as it is and gives no warning") {
-  const PreparedMesh mesh = prepare_mesh(tetrahedron());
-  CHECK(mesh.mesh.triangles == tetrahedron().triangles);
-  CHECK(mesh.mesh.vertices == tetrahedron().vertices);
+  const PreparedMesh mesh = prepare_mesh(tetrahedron_mesh());
+  CHECK(mesh.mesh.triangles == tetrahedron_mesh().triangles);
+  CHECK(mesh.mesh.vertices == tetrahedron_mesh().vertices);
   CHECK(mesh.warnings.empty());
   CHECK(mesh.open_edges.empty());
   const MeshReport& r = mesh.report;
@@ -46,8 +45,8 @@ TEST_CASE("a clean tetrahedron stays as it is and gives no warning") {
 
 TEST_CASE("vertices weld by exact position, with minus zero equal to zero") {
   TriangleMesh soup; // the tetrahedron, three vertices a triangle, and one that nobody uses
-  for (const Triangle& t : tetrahedron().triangles)
-    for (const std::uint32_t v : t) soup.vertices.push_back(tetrahedron().vertices[v]);
+  for (const Triangle& t : tetrahedron_mesh().triangles)
+    for (const std::uint32_t v : t) soup.vertices.push_back(tetrahedron_mesh().vertices[v]);
   for (std::uint32_t t = 0; t < 4; ++t) soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   soup.vertices[0].x = -0.0;
   soup.vertices[3].z = -0.0;
@@ -64,7 +63,7 @@ TEST_CASE("vertices weld by exact position, with minus zero equal to zero") {
 }
 
 TEST_CASE("a crack of one ulp is not welded") {
-  TriangleMesh mesh = box();
+  TriangleMesh mesh = box_mesh();
   mesh.vertices.push_back(Vec3d(std::nextafter(1.0, 2), 1, 1));
   mesh.triangles[11] = {4, 8, 6};
   const PreparedMesh prepared = prepare_mesh(mesh);
@@ -74,24 +73,24 @@ TEST_CASE("a crack of one ulp is not welded") {
 }
 
 TEST_CASE("an inverted mesh is turned, unless its orientation is trusted") {
-  const PreparedMesh turned = prepare_mesh(inverted(box()));
+  const PreparedMesh turned = prepare_mesh(inverted_mesh(box_mesh()));
   CHECK(turned.report.orientation == Orientation::inverted);
   CHECK(turned.report.flipped_triangles == 12);
   CHECK(turned.report.volume == Approx(1));
   CHECK(winding_number(turned.mesh, middle) == winding(1));
   CHECK(warned(turned, "inside out"));
 
-  const PreparedMesh trusted = prepare_mesh(inverted(box()), {true});
+  const PreparedMesh trusted = prepare_mesh(inverted_mesh(box_mesh()), {true});
   CHECK(trusted.report.orientation == Orientation::inverted);
   CHECK(trusted.report.flipped_triangles == 0);
-  CHECK(trusted.mesh.triangles == inverted(box()).triangles);
+  CHECK(trusted.mesh.triangles == inverted_mesh(box_mesh()).triangles);
   CHECK(trusted.report.volume == Approx(-1));
   CHECK(winding_number(trusted.mesh, middle) == winding(-1));
 }
 
 TEST_CASE("one flipped face is turned back, and nothing else") {
   for (std::size_t t = 0; t < 12; ++t) {
-    TriangleMesh mesh = box();
+    TriangleMesh mesh = box_mesh();
     std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
     const PreparedMesh prepared = prepare_mesh(mesh);
     CHECK(prepared.report.orientation == Orientation::mixed);
@@ -108,7 +107,7 @@ TEST_CASE("one flipped face is turned back, and nothing else") {
 }
 
 TEST_CASE("open edges close the boundary chain") {
-  TriangleMesh mesh = without(box(), 10, 2);
+  TriangleMesh mesh = without_triangles(box_mesh(), 10, 2);
   const PreparedMesh prepared = prepare_mesh(mesh);
   REQUIRE(prepared.open_edges.size() == 4);
   // Triangles over these edges with any apex complete the box's winding number to an integer.
@@ -133,14 +132,14 @@ TEST_CASE("open edges close the boundary chain") {
 }
 
 TEST_CASE("an inverted open box is turned") {
-  const PreparedMesh prepared = prepare_mesh(inverted(without(box(), 0, 2)));
+  const PreparedMesh prepared = prepare_mesh(inverted_mesh(without_triangles(box_mesh(), 0, 2)));
   CHECK(prepared.report.orientation == Orientation::inverted);
   CHECK(prepared.report.flipped_triangles == 10);
   CHECK(prepared.report.volume == Approx(1));
 }
 
 TEST_CASE("an inverted shell inside a body is a cavity and stays") {
-  const TriangleMesh hollow = joined(box(Vec3d(-2), Vec3d(3)), inverted(box()));
+  const TriangleMesh hollow = joined_meshes(box_mesh(Vec3d(-2), Vec3d(3)), inverted_mesh(box_mesh()));
   const PreparedMesh prepared = prepare_mesh(hollow);
   CHECK(prepared.report.flipped_triangles == 0);
   CHECK(prepared.report.orientation == Orientation::outward);
@@ -151,7 +150,8 @@ TEST_CASE("an inverted shell inside a body is a cavity and stays") {
 }
 
 TEST_CASE("an inverted hollow body turns as a whole") {
-  const PreparedMesh prepared = prepare_mesh(inverted(joined(box(Vec3d(-2), Vec3d(3)), inverted(box()))));
+  const PreparedMesh prepared =
+      prepare_mesh(inverted_mesh(joined_meshes(box_mesh(Vec3d(-2), Vec3d(3)), inverted_mesh(box_mesh()))));
   CHECK(prepared.report.orientation == Orientation::inverted);
   CHECK(prepared.report.flipped_triangles == 24);
   CHECK(winding_number(prepared.mesh, middle) == winding(0));
@@ -160,9 +160,11 @@ TEST_CASE("an inverted hollow body turns as a whole") {
 
 TEST_CASE(
     "a body inside a cavity inside a body keeps its side, and is turned when it would wind below zero") {
-  const TriangleMesh hollow = joined(box(Vec3d(-4), Vec3d(5)), inverted(box(Vec3d(-2), Vec3d(3))));
+  const TriangleMesh hollow =
+      joined_meshes(box_mesh(Vec3d(-4), Vec3d(5)), inverted_mesh(box_mesh(Vec3d(-2), Vec3d(3))));
   for (const bool wrong : {false, true}) {
-    const PreparedMesh prepared = prepare_mesh(joined(hollow, wrong ? inverted(box()) : box()));
+    const PreparedMesh prepared =
+        prepare_mesh(joined_meshes(hollow, wrong ? inverted_mesh(box_mesh()) : box_mesh()));
     CHECK(prepared.report.flipped_triangles == (wrong ? 12 : 0));
     CHECK(winding_number(prepared.mesh, middle) == winding(1));
     CHECK(winding_number(prepared.mesh, Vec3d(-1)) == winding(0));
@@ -171,7 +173,8 @@ TEST_CASE(
 }
 
 TEST_CASE("of two separate bodies only the inverted one is turned") {
-  const PreparedMesh prepared = prepare_mesh(joined(box(), inverted(box(Vec3d(3), Vec3d(4)))));
+  const PreparedMesh prepared =
+      prepare_mesh(joined_meshes(box_mesh(), inverted_mesh(box_mesh(Vec3d(3), Vec3d(4)))));
   CHECK(prepared.report.orientation == Orientation::mixed);
   CHECK(prepared.report.flipped_triangles == 12);
   CHECK(winding_number(prepared.mesh, middle) == winding(1));
@@ -179,14 +182,14 @@ TEST_CASE("of two separate bodies only the inverted one is turned") {
 }
 
 TEST_CASE("an inverted part that sticks out of a body is no cavity") {
-  const PreparedMesh prepared =
-      prepare_mesh(joined(box(Vec3d(0), Vec3d(4)), inverted(box(Vec3d(1, 1, 3), Vec3d(2, 2, 6)))));
+  const PreparedMesh prepared = prepare_mesh(
+      joined_meshes(box_mesh(Vec3d(0), Vec3d(4)), inverted_mesh(box_mesh(Vec3d(1, 1, 3), Vec3d(2, 2, 6)))));
   CHECK(prepared.report.flipped_triangles == 12);
   CHECK(winding_number(prepared.mesh, Vec3d(1.5, 1.4, 5)) == winding(1));
 }
 
 TEST_CASE("a Moebius strip is called non-orientable and left alone") {
-  const PreparedMesh prepared = prepare_mesh(moebius(40));
+  const PreparedMesh prepared = prepare_mesh(moebius_mesh(40));
   CHECK(prepared.report.orientation == Orientation::non_orientable);
   CHECK(prepared.report.winding_clashes == 1);
   CHECK(prepared.report.flipped_triangles == 0);
@@ -208,7 +211,7 @@ TEST_CASE("three faces on an edge are reported, with the chain they leave") {
 }
 
 TEST_CASE("two bodies that touch in a vertex are one component of two shells with one pinched vertex") {
-  const PreparedMesh prepared = prepare_mesh(joined(box(), box(Vec3d(1), Vec3d(2))));
+  const PreparedMesh prepared = prepare_mesh(joined_meshes(box_mesh(), box_mesh(Vec3d(1), Vec3d(2))));
   CHECK(prepared.report.components == 1);
   CHECK(prepared.report.shells == 2);
   CHECK(prepared.report.non_manifold_vertices == 1);
@@ -218,10 +221,10 @@ TEST_CASE("two bodies that touch in a vertex are one component of two shells wit
 }
 
 TEST_CASE("bodies that share an edge pair up there, whichever of them is inverted") {
-  const TriangleMesh a = box(), b = box(Vec3d(1, 1, 0), Vec3d(2, 2, 1));
+  const TriangleMesh a = box_mesh(), b = box_mesh(Vec3d(1, 1, 0), Vec3d(2, 2, 1));
   for (int mask = 0; mask < 4; ++mask) {
     const PreparedMesh prepared =
-        prepare_mesh(joined(mask & 1 ? inverted(a) : a, mask & 2 ? inverted(b) : b));
+        prepare_mesh(joined_meshes(mask & 1 ? inverted_mesh(a) : a, mask & 2 ? inverted_mesh(b) : b));
     CAPTURE(mask);
     CHECK(prepared.report.non_manifold_edges == 1);
     CHECK(prepared.report.shells == 1);
@@ -230,7 +233,7 @@ TEST_CASE("bodies that share an edge pair up there, whichever of them is inverte
 }
 
 TEST_CASE("a repeated face of a closed mesh is dropped") {
-  TriangleMesh mesh = box();
+  TriangleMesh mesh = box_mesh();
   mesh.triangles.push_back({mesh.triangles[3][1], mesh.triangles[3][2], mesh.triangles[3][0]});
   const PreparedMesh prepared = prepare_mesh(mesh);
   CHECK(prepared.report.duplicate_triangles == 1);
@@ -242,7 +245,7 @@ TEST_CASE("a repeated face of a closed mesh is dropped") {
 }
 
 TEST_CASE("a whole mesh that is there twice is dropped once") {
-  const PreparedMesh prepared = prepare_mesh(joined(box(), box()));
+  const PreparedMesh prepared = prepare_mesh(joined_meshes(box_mesh(), box_mesh()));
   CHECK(prepared.report.duplicate_triangles == 12);
   CHECK(prepared.mesh.triangles.size() == 12);
   CHECK(prepared.open_edges.empty());
@@ -268,27 +271,27 @@ TEST_CASE("a doubled face between two tetrahedra stays, and closes both however 
 }
 
 TEST_CASE("an open sheet that is there twice is dropped once and stays open") {
-  const TriangleMesh sheet = without(box(), 4, 8);
-  const PreparedMesh prepared = prepare_mesh(joined(sheet, sheet));
+  const TriangleMesh sheet = without_triangles(box_mesh(), 4, 8);
+  const PreparedMesh prepared = prepare_mesh(joined_meshes(sheet, sheet));
   CHECK(prepared.report.duplicate_triangles == 4);
   CHECK(prepared.mesh.triangles.size() == 4);
   CHECK(prepared.open_edges.size() == 8);
 }
 
 TEST_CASE("of a double-sided mesh one side is kept and turned outward") {
-  const PreparedMesh prepared = prepare_mesh(joined(inverted(box()), box()));
+  const PreparedMesh prepared = prepare_mesh(joined_meshes(inverted_mesh(box_mesh()), box_mesh()));
   CHECK(prepared.report.opposite_triangles == 12);
   CHECK(prepared.mesh.triangles.size() == 12);
   CHECK(prepared.open_edges.empty());
   CHECK(winding_number(prepared.mesh, middle) == winding(1));
   CHECK(warned(prepared, "12 faces are doubled"));
 
-  const PreparedMesh trusted = prepare_mesh(joined(inverted(box()), box()), {true});
+  const PreparedMesh trusted = prepare_mesh(joined_meshes(inverted_mesh(box_mesh()), box_mesh()), {true});
   CHECK(trusted.mesh.triangles.size() == 24);
 }
 
 TEST_CASE("an opposite pair on a closed body stays as geometry") {
-  TriangleMesh mesh = box();
+  TriangleMesh mesh = box_mesh();
   mesh.vertices.push_back(Vec3d(2, 2, 2));
   mesh.triangles.push_back({0, 1, 8});
   mesh.triangles.push_back({1, 0, 8});
@@ -300,7 +303,7 @@ TEST_CASE("an opposite pair on a closed body stays as geometry") {
 }
 
 TEST_CASE("a T-junction filled with a triangle without area stays closed") {
-  TriangleMesh mesh = box();
+  TriangleMesh mesh = box_mesh();
   mesh.vertices.emplace_back(0.5, 0, 0); // on edge 0-1
   mesh.triangles[9] = {0, 3, 8};         // was 0 3 1
   mesh.triangles.push_back({8, 3, 1});
@@ -317,7 +320,7 @@ TEST_CASE("a T-junction filled with a triangle without area stays closed") {
 }
 
 TEST_CASE("triangles with a repeated corner are dropped and counted") {
-  TriangleMesh mesh = box();
+  TriangleMesh mesh = box_mesh();
   mesh.triangles.push_back({3, 3, 5});
   mesh.vertices.push_back(mesh.vertices[2]);
   mesh.triangles.push_back({2, 5, 8}); // repeated by position
@@ -353,20 +356,22 @@ TEST_CASE("a single flat triangle has no orientation but is accepted") {
 
 TEST_CASE("orientation is found far from the origin and at extreme scales") {
   for (const double offset : {1e7, -1e12})
-    CHECK(prepare_mesh(inverted(moved(torus(2, 0.5, 24, 12), Vec3d(offset)))).report.flipped_triangles ==
-          576);
+    CHECK(prepare_mesh(inverted_mesh(moved_mesh(torus_mesh(24, 12, 2, 0.5), Vec3d(offset))))
+              .report.flipped_triangles == 576);
   for (const double scale : {1e-30, 1e30})
-    CHECK(prepare_mesh(inverted(moved(torus(2, 0.5, 24, 12), Vec3d(0), scale))).report.flipped_triangles ==
-          576);
+    CHECK(prepare_mesh(inverted_mesh(moved_mesh(torus_mesh(24, 12, 2, 0.5), Vec3d(0), scale)))
+              .report.flipped_triangles == 576);
 }
 
 TEST_CASE("a thousand inverted crumbs in the open and in a body are told apart") {
-  TriangleMesh mesh = box(Vec3d(-1), Vec3d(41));
+  TriangleMesh mesh = box_mesh(Vec3d(-1), Vec3d(41));
   for (int i = 0; i < 1000; ++i)
-    mesh = joined(std::move(mesh), inverted(box(Vec3d(i % 10, i / 10 % 10, i / 100) * 4.0 + Vec3d(0.5),
+    mesh = joined_meshes(std::move(mesh),
+                         inverted_mesh(box_mesh(Vec3d(i % 10, i / 10 % 10, i / 100) * 4.0 + Vec3d(0.5),
                                                 Vec3d(i % 10, i / 10 % 10, i / 100) * 4.0 + Vec3d(1.5))));
   for (int i = 0; i < 10; ++i)
-    mesh = joined(std::move(mesh), inverted(box(Vec3d(100 + 2 * i, 0, 0), Vec3d(101 + 2 * i, 1, 1))));
+    mesh = joined_meshes(std::move(mesh),
+                         inverted_mesh(box_mesh(Vec3d(100 + 2 * i, 0, 0), Vec3d(101 + 2 * i, 1, 1))));
   const PreparedMesh prepared = prepare_mesh(mesh);
   CHECK(prepared.report.shells == 1011);
   CHECK(prepared.report.flipped_triangles == 120);
@@ -374,7 +379,7 @@ TEST_CASE("a thousand inverted crumbs in the open and in a body are told apart")
 }
 
 TEST_CASE("the prepared mesh does not depend on the number of threads") {
-  TriangleMesh mesh = joined(torus(3, 1, 200, 100), inverted(torus(3, 0.4, 150, 70)));
+  TriangleMesh mesh = joined_meshes(torus_mesh(200, 100, 3, 1), inverted_mesh(torus_mesh(150, 70, 3, 0.4)));
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 97)
     std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
   PreparedMesh one, three;

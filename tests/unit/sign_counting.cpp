@@ -3,9 +3,9 @@
 #include "levelray/convert/caps.hpp"
 #include "levelray/convert/crossing.hpp"
 #include "levelray/convert/weighted_union_find.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/mesh/winding_number.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 #include <map>
 #include <numeric>
@@ -31,9 +31,9 @@ TEST_CASE(
     "crossings sum to zero around every lattice square, also where edges, corners and faces lie on samples") {
   // All coordinates are halves or wholes: samples on corners, edges and faces everywhere.
   const TriangleMesh shapes[] = {
-      made::box(Vec3d(-3, -2, -1), Vec3d(2, 3, 4)), made::moved(made::tetrahedron(), Vec3d(-2, -2, -2), 5),
-      made::joined(made::box(Vec3d(-3), Vec3d(1)), made::box(Vec3d(-1), Vec3d(3))),
-      made::moved(made::tetrahedron(), Vec3d(0.5), 3), made::without(made::box(Vec3d(-3), Vec3d(3)), 3, 2)};
+      box_mesh(Vec3d(-3, -2, -1), Vec3d(2, 3, 4)), moved_mesh(tetrahedron_mesh(), Vec3d(-2, -2, -2), 5),
+      joined_meshes(box_mesh(Vec3d(-3), Vec3d(1)), box_mesh(Vec3d(-1), Vec3d(3))),
+      moved_mesh(tetrahedron_mesh(), Vec3d(0.5), 3), without_triangles(box_mesh(Vec3d(-3), Vec3d(3)), 3, 2)};
   for (const TriangleMesh& shape : shapes) {
     const VoxelMesh mesh = voxel_mesh(shape);
     const std::vector<std::uint32_t> list = all_of(mesh);
@@ -59,7 +59,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a crossing's winding is the change of the winding number") {
-  const TriangleMesh torus = made::moved(made::torus(1, 0.4, 23, 17), Vec3d(0.21, 0.13, -0.4), 7);
+  const TriangleMesh torus = moved_mesh(torus_mesh(23, 17, 1, 0.4), Vec3d(0.21, 0.13, -0.4), 7);
   const VoxelMesh mesh = voxel_mesh(torus);
   const std::vector<std::uint32_t> list = all_of(mesh);
   int crossed = 0;
@@ -102,7 +102,7 @@ TEST_CASE("caps have the chain as their boundary, whatever its loops look like")
 
 TEST_CASE("the winding of an open mesh is an integer less the winding of its caps") {
   const TriangleMesh open =
-      made::moved(made::without(made::torus(1, 0.4, 30, 20), 40, 90), Vec3d(0.3, 0.1, 0.2), 9);
+      moved_mesh(without_triangles(torus_mesh(30, 20, 1, 0.4), 40, 90), Vec3d(0.3, 0.1, 0.2), 9);
   const VoxelMesh mesh = voxel_mesh(open);
   REQUIRE(mesh.has_caps());
   const BoundaryWinding boundary(mesh);

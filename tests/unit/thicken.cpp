@@ -2,10 +2,10 @@
 
 #include "levelray/convert/mesh_to_grid.hpp"
 #include "levelray/core/error.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/trace/level_set.hpp"
 #include "support/catch.hpp"
 #include "support/conversion.hpp"
-#include "support/made_meshes.hpp"
 
 #include <random>
 
@@ -62,7 +62,7 @@ TEST_CASE(
   for (const Case& c : {Case{0.9, 3}, Case{1.5, 3}, Case{3, 3}, Case{6.3, 2}, Case{1, 1}}) {
     const double radius = c.radius_voxels * h;
     for (const TriangleMesh& mesh :
-         {wavy_sheet(7, 31), made::moebius(30), made::box(Vec3d(-0.5), Vec3d(0.5))}) {
+         {wavy_sheet(7, 31), moebius_mesh(30), box_mesh(Vec3d(-0.5), Vec3d(0.5))}) {
       CAPTURE(c.radius_voxels, c.half_width, mesh.triangles.size());
       const ConvertedGrid result = thickened(mesh, h, radius, c.half_width);
       const BlockGrid& grid = result.grid;
@@ -150,8 +150,7 @@ TEST_CASE("sheets that are too thin are refused, doubtful ones warned of, with w
   CHECK_THAT(report.warnings[0], Contains("1.2 voxels thick; below 1.73 it may have holes"));
   options.thicken = 0.1;
   CHECK(mesh_to_grid(prepare_mesh(sheet), options).report.warnings.empty());
-  CHECK_THAT(mesh_to_grid(prepare_mesh(made::box()), options).report.warnings.at(0),
-             Contains("hollow shell"));
+  CHECK_THAT(mesh_to_grid(prepare_mesh(box_mesh()), options).report.warnings.at(0), Contains("hollow shell"));
   options.sign = SignMethod::winding;
   CHECK_THAT(refusal(sheet, options, ErrorKind::usage), Contains("leave out --sign"));
   options.sign = SignMethod::automatic;
@@ -176,7 +175,7 @@ TEST_CASE("an open sheet without --thicken is told of it") {
 TEST_CASE("what does not matter to a sheet is not warned of") {
   PrepareOptions options;
   options.sheet = true;
-  for (TriangleMesh mesh : {wavy_sheet(4, 9), made::moebius(20), made::inverted(made::box())}) {
+  for (TriangleMesh mesh : {wavy_sheet(4, 9), moebius_mesh(20), inverted_mesh(box_mesh())}) {
     CHECK(!prepare_mesh(mesh).warnings.empty());
     CHECK(prepare_mesh(mesh, options).warnings.empty());
     std::swap(mesh.triangles[0][0], mesh.triangles[0][1]); // clashes with its neighbours

@@ -2,12 +2,12 @@
 #include "levelray/core/error.hpp"
 #include "levelray/intersect/intersectors.hpp"
 #include "levelray/measure/half_storage.hpp"
+#include "levelray/measure/made_meshes.hpp"
 #include "levelray/measure/method_costs.hpp"
 #include "levelray/measure/ray_sets.hpp"
 #include "levelray/measure/surface_judge.hpp"
 #include "levelray/normal/normals.hpp"
 #include "support/catch.hpp"
-#include "support/made_meshes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,8 +50,8 @@ TEST_CASE("a sample of errors demonstrates no more than chance allows") {
 
 TEST_CASE("the judge sees a fin that fell between the samples, though what rays hit instead is right") {
   // A cube of 1 with a fin of half the size, 0.3 voxels thick.
-  TriangleMesh mesh = made::joined(made::box(Vec3d(0.003), Vec3d(1.003)),
-                                   made::box(Vec3d(1.003, 0.2, 0.507), Vec3d(1.503, 0.8, 0.516)));
+  TriangleMesh mesh = joined_meshes(box_mesh(Vec3d(0.003), Vec3d(1.003)),
+                                    box_mesh(Vec3d(1.003, 0.2, 0.507), Vec3d(1.503, 0.8, 0.516)));
   const PreparedMesh prepared = prepare_mesh(mesh);
   ConvertOptions options;
   options.voxel_size = 0.03;
@@ -73,7 +73,7 @@ TEST_CASE("the judge sees a fin that fell between the samples, though what rays 
 }
 
 TEST_CASE("on a plane the distance to the zero set is exact, and a hit's distance to the mesh too") {
-  const PreparedMesh prepared = prepare_mesh(made::box(Vec3d(0.003), Vec3d(1.003)));
+  const PreparedMesh prepared = prepare_mesh(box_mesh(Vec3d(0.003), Vec3d(1.003)));
   ConvertOptions options;
   options.voxel_size = 0.05;
   const BlockGrid grid = mesh_to_grid(prepared, options).grid;
@@ -93,7 +93,7 @@ TEST_CASE("on a plane the distance to the zero set is exact, and a hit's distanc
 
 TEST_CASE("what closes a hole is not judged, and all else of an open mesh is") {
   const PreparedMesh open =
-      prepare_mesh(made::without(made::box(Vec3d(0.003), Vec3d(1.003)), 10, 2)); // no lid
+      prepare_mesh(without_triangles(box_mesh(Vec3d(0.003), Vec3d(1.003)), 10, 2)); // no lid
   const MeshTruth truth(open);
   CHECK(std::isnan(truth.distance(Vec3d(0.5, 0.5, 1.003), 1)));
   CHECK(truth.distance(Vec3d(0.5, 0.5, 0.1), 1) == Approx(0.097));
@@ -106,7 +106,7 @@ TEST_CASE("what closes a hole is not judged, and all else of an open mesh is") {
 }
 
 TEST_CASE("a sheet's first places lie at its radius from the mesh") {
-  const PreparedMesh prepared = prepare_mesh(made::tetrahedron());
+  const PreparedMesh prepared = prepare_mesh(tetrahedron_mesh());
   const MeshTruth truth(prepared, 0.1);
   std::size_t found = 0;
   for (const WorldRay& ray : random_chords(truth.bounds(), 200, 5))
@@ -119,7 +119,7 @@ TEST_CASE("a sheet's first places lie at its radius from the mesh") {
 }
 
 TEST_CASE("values of a grid stored as half are rounded to halves, and zeros are positive") {
-  const PreparedMesh prepared = prepare_mesh(made::torus(1, 0.4, 24, 12));
+  const PreparedMesh prepared = prepare_mesh(torus_mesh(24, 12, 1, 0.4));
   ConvertOptions options;
   options.resolution = 32;
   BlockGrid grid = mesh_to_grid(prepared, options).grid;

@@ -2,8 +2,13 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace levelray {
+
+TriangleMesh tetrahedron_mesh() {
+  return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+}
 
 TriangleMesh box_mesh(const Vec3d& min, const Vec3d& max) {
   TriangleMesh mesh;
@@ -62,6 +67,16 @@ TriangleMesh moved_mesh(TriangleMesh mesh, const Vec3d& by, double scale) {
   return mesh;
 }
 
+TriangleMesh without_triangles(TriangleMesh mesh, std::size_t first, std::size_t count) {
+  mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first),
+                       mesh.triangles.begin() + static_cast<std::ptrdiff_t>(first + count));
+  return mesh;
+}
+
+TriangleMesh inverted_mesh(TriangleMesh mesh) {
+  return turned_faces(std::move(mesh), 1);
+}
+
 TriangleMesh turned_faces(TriangleMesh mesh, int every) {
   for (std::size_t i = 0; i < mesh.triangles.size(); i += static_cast<std::size_t>(every))
     std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
@@ -86,8 +101,7 @@ TriangleMesh moebius_mesh(std::uint32_t n) {
 TriangleMesh with_five_holes() {
   TriangleMesh mesh = torus_mesh(20, 12);
   for (const std::size_t hole : {400u, 300u, 211u, 120u, 31u}) // from the back, single quads and triangles
-    mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(hole),
-                         mesh.triangles.begin() + static_cast<std::ptrdiff_t>(hole + 1 + hole % 2));
+    mesh = without_triangles(std::move(mesh), hole, 1 + hole % 2);
   return mesh;
 }
 

@@ -6,7 +6,9 @@
 
 namespace levelray {
 
-TriangleMesh box_mesh(const Vec3d& min, const Vec3d& max);
+TriangleMesh tetrahedron_mesh();
+// The faces' two triangles each in the order -x +x -y +y -z +z.
+TriangleMesh box_mesh(const Vec3d& min = Vec3d(0, 0, 0), const Vec3d& max = Vec3d(1, 1, 1));
 // Around z, n by m quads.
 TriangleMesh torus_mesh(std::uint32_t n, std::uint32_t m, double big = 1, double small = 0.4);
 // n by m quads between poles on z.
@@ -16,6 +18,8 @@ TriangleMesh moebius_mesh(std::uint32_t n);
 
 TriangleMesh joined_meshes(TriangleMesh a, const TriangleMesh& b);
 TriangleMesh moved_mesh(TriangleMesh mesh, const Vec3d& by, double scale = 1);
+TriangleMesh without_triangles(TriangleMesh mesh, std::size_t first, std::size_t count);
+TriangleMesh inverted_mesh(TriangleMesh mesh);
 TriangleMesh turned_faces(TriangleMesh mesh, int every); // the first of every so many
 
 // A torus with five holes of one or two triangles.
