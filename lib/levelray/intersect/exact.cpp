@@ -4,21 +4,6 @@
 
 namespace levelray {
 
-namespace {
-
-// The cubic and its derivative in the power basis: one sum fewer per evaluation, and equally good in double.
-struct Cubic {
-  double c0, c1, c2, c3;
-
-  explicit Cubic(const Bernstein<double>& f)
-      : c0(f.start), c1(f.sum1 - 3 * f.start), c2((f.sum2 - f.sum1) - c1),
-        c3((f.end - f.start) - (f.sum2 - f.sum1)) {}
-  double operator()(double s) const { return ((c3 * s + c2) * s + c1) * s + c0; }
-  double slope(double s) const { return (3 * c3 * s + 2 * c2) * s + c1; }
-};
-
-} // namespace
-
 // In the Bernstein basis, whose terms do not cancel beyond the hull of the coefficients.
 double Exact::evaluate(const Bernstein<double>& f, double s) {
   const double r = 1 - s;
@@ -58,7 +43,7 @@ void Exact::polish(const Bernstein<double>& f, double last, double margin, CellR
   root.outside = CellRoot::nowhere;
   if (last == 0) return;
 
-  const Cubic cubic(f);
+  const PowerCubic cubic(f);
   double low = 0, high = last; // f(low) > 0 >= f(high)
   const double f_high = cubic(high);
   // A minimum that just touches 0 is the root, and so is the end if f comes down to it; else f(1) = 0 is the

@@ -64,10 +64,6 @@ struct Exact {
     return (f.start * sign > error) & (f.sum1 * sign > 3 * error) & (f.sum2 * sign > 3 * error) &
            (f.end * sign > error);
   }
-  static Bernstein<double> oriented(const CellSegment& segment, double side) {
-    const Bernstein<double> f = bernstein_along<double>(segment);
-    return {f.start * side, f.sum1 * side, f.sum2 * side, f.end * side};
-  }
 };
 
 } // namespace levelray

@@ -10,22 +10,13 @@
 namespace levelray {
 
 // side * f at fraction s of the segment. Values at the ends are those of `interpolate`, bit for bit, so that
-// cells agree on a shared face. Between them, with M the largest |corner| and u = 2^-53: sums are off by 48 u
-// M (bernstein.hpp), c1, c2, c3 are at most 6, 12 and 8 M, and six operations on them round: below 2^-44 M.
-struct SegmentCubic {
+// cells agree on a shared face.
+struct SegmentCubic : PowerCubic {
   Bernstein<double> f; // times side
-  double c1, c2, c3;   // f.start + c1 s + c2 s^2 + c3 s^3
   double margin;       // safety_margin
 
-  SegmentCubic(const CellSegment& segment, double side) : f(bernstein_along<double>(segment)) {
-    f.start *= side, f.sum1 *= side, f.sum2 *= side, f.end *= side;
-    c1 = f.sum1 - 3 * f.start;
-    c2 = (f.sum2 - f.sum1) - c1;
-    c3 = (f.end - f.start) - (f.sum2 - f.sum1);
-    margin = safety_margin(segment);
-  }
-  double operator()(double s) const { return ((c3 * s + c2) * s + c1) * s + f.start; }
-  double slope(double s) const { return (3 * c3 * s + 2 * c2) * s + c1; }
+  SegmentCubic(const CellSegment& segment, double side)
+      : SegmentCubic(oriented(segment, side), safety_margin(segment)) {}
 
   // The places in (0,1) where the slope changes its sign, ascending; returns how many there are. The
   // quadratic formula in the form without cancellation.
@@ -40,6 +31,9 @@ struct SegmentCubic {
     if (count == 2 && at[1] < at[0]) std::swap(at[0], at[1]);
     return count;
   }
+
+ private:
+  SegmentCubic(const Bernstein<double>& along, double safe) : PowerCubic(along), f(along), margin(safe) {}
 };
 
 // f(low) > 0 >= f(high).
